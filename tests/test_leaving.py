@@ -93,3 +93,29 @@ def test_what_flies_far_and_comes_back_is_not_let_go(tmp_path):
     assert render(high, folder=tmp_path).warnings == ()
     (moment,) = simulate(high, [4.0])
     assert moment.bounds(())[1][1] > 15
+
+
+FOUNTAIN = """clock: {{end: 3 s}}
+objects: {{{pipe}}}
+models:
+  water: {{particles: {{emit: {{rate: 20 Hz, from: 0 0.2 0 m, velocity: 0 4 0 m/s, spread: 12 deg, lifetime: 2 s}}}}}}
+forces: [gravity]
+outputs: {{still: {{image: {{size: 64 36, time: 3 s}}}}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("pipe", "deep"), [("pipe: {cylinder: {radius: 0.1 m, height: 0.4 m, position: 0 0.2 0 m}}", False), ("", True)]
+)
+def test_drops_that_fall_past_what_they_come_from_are_let_go(tmp_path, pipe, deep):
+    (tmp_path / "scene.yaml").write_text(FOUNTAIN.format(pipe=pipe))
+    graph = load(tmp_path / "scene.yaml")
+    (moment,) = simulate(graph, [3.0])
+    low, high = moment.bounds(())
+    assert moment.read("water", "positions")[:, 1].min() < -6
+    assert (low[1] < -6) == deep
+    assert high[1] > 0.9
+    assert deep or low[1] > -1
+    told = [one.message for one in render(graph, folder=tmp_path).warnings]
+    assert len(told) == (not deep)
+    assert all("masses of 'water' leave for good" in one for one in told)

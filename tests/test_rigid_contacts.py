@@ -9,6 +9,7 @@ import rigid_scenes
 import runs
 from runs import complaint
 from sceneql.cli import cli
+from sceneql.quantities.diagnostic import ScriptError
 
 SOLVER = "semi_implicit_euler: {step: 5 ms}"
 
@@ -309,3 +310,20 @@ solvers: {{main: {{rk4: {{step: {step} ms}}}}}}
     taken = np.diff(dissipated)
     assert taken.min() > -1e-12
     assert 0 < taken.max() < 2.01 * 0.5 * (9.81e-3 * step) ** 2  # (Two may come between frames.)
+
+
+@pytest.mark.parametrize("mode", ["exact", "local"])
+def test_a_ball_laid_a_little_too_deep_on_a_ramp_is_told_how_far_to_move(tmp_path, mode):
+    script = f"""
+clock: {{end: 0.1 s}}
+objects:
+  ramp: {{box: {{size: 6 0.2 2 m, rotation: {{about: z, angle: -20 deg}}}}}}
+  ball: {{sphere: {{radius: 0.2 m, position: -2 1.04 0 m}}}}
+models: {{roller: {{rigid: {{of: ball, density: 800 kg/m^3}}}}}}
+contacts: {{roll: {{collision: {{between: [roller, ramp], mode: {mode}}}}}}}
+"""
+    with pytest.raises(ScriptError) as told:
+        runs.watch(tmp_path, script, [0.0], pruned=False)
+    assert told.value.diagnostics[0].help == "move 'ball' by 0.00232 0.00636 0 m"
+    moved = script.replace("-2 1.04 0 m", "-1.99768 1.04636 0 m")
+    runs.watch(tmp_path, moved, [0.0], pruned=False)

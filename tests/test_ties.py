@@ -404,6 +404,27 @@ def test_velocities_that_a_tie_forbids_are_left_at_the_start(tmp_path):
     np.testing.assert_allclose(spin, [0, 1, 0], atol=1e-14)
 
 
+def test_a_top_that_is_given_its_spin_alone_turns_about_its_tip(tmp_path):
+    script = """
+models: {top: {rigid: {mass: 2 kg, inertia: 1 2 1 kg*m^2, position: 0.3 0.4 0 m, spin: 3 4 0 rad/s}}}
+ties: {tip: {ball: {between: [top, world], at: 0 0 0.1 m}}}
+"""
+    ((velocity, spin),) = watch(tmp_path, script, [0], "top.velocity", "top.spin")
+    np.testing.assert_allclose(spin, [3, 4, 0], atol=1e-14)
+    np.testing.assert_allclose(velocity, np.cross([3, 4, 0], [0.3, 0.4, -0.1]), atol=1e-14)
+
+
+def test_what_is_welded_to_a_body_with_a_velocity_goes_with_it(tmp_path):
+    script = """
+models:
+  rod: {rigid: {mass: 0.2 kg, inertia: 0.1 0.1 0.1 kg*m^2, position: 0 -0.5 0 m}}
+  bob: {rigid: {mass: 1 kg, inertia: 0.1 0.1 0.1 kg*m^2, position: 0 -1 0 m, velocity: 0.6 0 0 m/s}}
+ties: {pivot: {hinge: {between: [rod, world], at: 0 0 0 m}}, glue: {weld: {between: [rod, bob]}}}
+"""
+    ((place, spin, other),) = watch(tmp_path, script, [0], "rod.velocity", "rod.spin", "bob.velocity")
+    np.testing.assert_allclose([place, spin, other], [[0.3, 0, 0], [0, 0, 0.6], [0.6, 0, 0]], atol=1e-14)
+
+
 def test_a_scene_without_ties_loads_nothing_of_them(tmp_path):
     path = tmp_path / "scene.yaml"
     path.write_text("clock: {end: 1 s}\nmodels: {it: {particles: {list: {a: {}}}}}\nforces: [gravity]\n")

@@ -41,6 +41,18 @@ def test_a_trail_is_the_way_of_its_points(tmp_path):
     assert trail.radii.max() < 0.02
 
 
+def test_a_trail_has_more_corners_where_it_bends(tmp_path):
+    """Of two points, one goes round six times a second: the other's pieces stay as long as they are."""
+    script = SCENE.replace("sky.positions", "[[cos(6*a)*1 m, sin(6*a)*1 m, 0 m], [1 m/s*time, 0 m, 0 m]]")
+    script = script.replace("clock:", "define: {a: 360 deg*time/(1 s)}\nclock:")
+    ((_, (trail,)),) = shapes(tmp_path, script, [1.7], ["way"])
+    straight = (trail.ends[..., 1] == 0.0).all(axis=1)
+    assert straight.sum() == 60
+    middles = trail.ends[~straight].mean(axis=1)
+    assert len(middles) == 4 * 60
+    assert np.abs(np.linalg.norm(middles, axis=1) - 1.0).max() < 1e-3
+
+
 def test_a_trail_does_not_know_the_frame_rate(tmp_path):
     often = shapes(tmp_path, SCENE, [k / 30 for k in range(52)], ["way"])[-1]
     once = shapes(tmp_path, SCENE, [often[0]], ["way"])[-1]
@@ -106,3 +118,13 @@ def test_of_corners_closer_than_can_be_kept_there_are_fewer(tmp_path, every):
     path = tmp_path / "scene.yaml"
     path.write_text(SCENE.replace("keep: 0.5 s", f"keep: 0.5 s, every: {every}"))
     assert 1000 < sum(1 for _ in Run(load(path)).history.due(0.5)) <= MOST + 1
+
+
+def test_an_output_of_a_model_is_read_once_an_instant(tmp_path):
+    """Hundreds of objects may read the places of one model."""
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENE)
+    (moment,) = Run(load(path)).moments([1.0])
+    first = moment.read("sky", "positions")
+    assert moment.read("sky", "positions") is first
+    assert moment.asked

@@ -42,6 +42,14 @@ def problem(formula: Formula, count: int) -> str | None:
     return None if all(map(printable, parts)) else "a formula uses an operation that a force cannot compute"
 
 
+def remedy(formula: Formula, count: int) -> str | None:
+    """The help where one formula stands for one along each axis."""
+    if formula.expr.type.shape or count != len(PLACE) or formula.span is None:
+        return None
+    text = formula.span.text.strip("\"'")
+    return f"it has one for each of x, y and z: write `[{text}, 0, 0]`"
+
+
 def downhill(potential: Formula) -> tuple[Expr, ...]:
     """The three scalar components of minus the gradient of a potential."""
     (phi,) = components(potential.expr)

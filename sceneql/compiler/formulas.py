@@ -168,6 +168,9 @@ def _around_place(node: Node, wanted: Dimension | None, what: str, names: Names)
     away = away if len(at) == 1 else f"({away})"
     unit = "" if wanted is None or wanted.plain else f", in {unit_of(wanted)}"
     deep = ", for a depth of 1 m" if amount is not None and whole and len(at) == 2 else ""
+    sides = [one.span.text for one in fields.values()]
+    if place is None and amount is None and len(sides) == len(("low", "high")):
+        return f"write it by place: `{what}: where(x < 0.5, {sides[0]}, {sides[1]})`, with the place of their border"
     return f"write one by place and time{unit}{deep}: `{what}: {peak:.3g}*exp(-{away}/{SQUARE:g})`"
 
 

@@ -70,6 +70,7 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
         found.error("wrong-shape", "color is one color, not a group of fields", node.span, help=f"write `{first}`")
         return None
     value = read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
+    _of_names(found, before)
     if [one.code for one in found.found[before:] if one.help is None] == ["wrong-shape"]:
         meant = OPAQUE if found.found[-1].message.endswith("not a vector of 4") else RED
         found.found[-1] = replace(found.found[-1], help=meant)
@@ -139,12 +140,28 @@ def _of_bytes(numbers: Sequence[float]) -> str:
     return f'write `{" ".join(f"{number:.3g}" for number in share)}`, or `"#{digits}"`'
 
 
+def _of_names(found: Diagnostics, first: int) -> None:
+    """Let the colors by name in helps from number ``first`` on be their numbers, as formulas take them."""
+    for k, one in enumerate(found.found[first:], first):
+        if one.help is not None and "`where(" in one.help:
+            help = re.sub(r"(?<=, )([a-z]+)(?=[,)])", lambda name: _numbers(name[0]), one.help)
+            found.found[k] = replace(one, help=help)
+
+
+def _numbers(name: str) -> str:
+    return f"[{', '.join(f'{c:.3g}' for c in css_color(name) or ())}]" if name in NAMED else name
+
+
 def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
     """A rotation as a unit quaternion [w, x, y, z] (4,)."""
     if unsure(node):
         return None
     if isinstance(node, MappingNode):
         given = node.entries
+        if "keys" in given and "about" in given:
+            help = f"write `{{about: {given['about'].span.text}, angle: {{keys: {given['keys'].span.text}}}}}`"
+            found.error("rotation-shape", "a rotation about an axis has keys for its angle", node.span, help=help)
+            return None
         if "keys" in given:
 
             def key(item: Node) -> Expr | None:
@@ -195,6 +212,10 @@ def _by_axis(node: Node, numbers: Sequence[float], found: Diagnostics) -> bool:
     if tuple(axis) == (0.0, 0.0, 0.0) and angle == 1.0:
         text = "as a quaternion `w x y z` this turns by 180 deg about z"
         found.warning("quaternion-order", text, node.span, help="w stands first: `1 0 0 0` turns nothing")
+    elif axis[0] == 0.0 and angle != 0.0 and any(axis):
+        text = f"as a quaternion `w x y z` this turns by 180 deg about {axis[1]:g} {axis[2]:g} {angle:g}"
+        help = f"w stands first: write `{angle:g} {axis[0]:g} {axis[1]:g} {axis[2]:g}` if it is the last here"
+        found.warning("quaternion-order", text, node.span, help=help)
     square = sum(c * c for c in axis)
     if abs(square - 1.0) > 1e-3 or abs(square + angle * angle - 1.0) < 2e-3 or angle in (1.0, -1.0):
         return False

@@ -93,9 +93,8 @@ class Reader:
             ok = report_unknown(node, known, title, self.found, **likely.asked(self, cls))
             ok = ok and not node.partial
             unknown = [name for name in node.entries if name not in known]
-            other = (
-                bool(unknown) and len(unknown) == len(written) and all(instead(f"field.{title}", n) for n in unknown)
-            )
+            alone = len(unknown) > 1 or len(written) == 1  # another thing may well be meant
+            other = alone and all(instead(f"field.{title}", one) for one in unknown) and bool(unknown)
             mistaken = likely.meant(self, cls, node)
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)

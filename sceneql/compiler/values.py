@@ -11,7 +11,7 @@ from sceneql.compiler.limits import numbers
 from sceneql.compiler.meant.factors import is_zero, remedy
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
-from sceneql.compiler.vector_fields import keys_meant, pair_meant, timed, vector_meant_by
+from sceneql.compiler.vector_fields import TURN, keys_meant, pair_meant, timed, vector_meant_by
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
@@ -252,7 +252,9 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
     for one in bare:
         place = span if one is expr or one.span is None else one.span
         text = vector_meant(place.text.strip("[]")) or place.text  # no unit stands behind a bracket
-        found.error("unit-needed", f"{what} needs a unit", place, help=f"write `{text} deg` or `{text} rad`")
+        large = Value(one).constant and max(map(abs, numbers(evaluate(one, {})))) > TURN
+        help = f"write `{text} deg`" if large else f"write `{text} deg` or `{text} rad`"
+        found.error("unit-needed", f"{what} needs a unit", place, help=help)
     return not bare
 
 

@@ -26,6 +26,7 @@ from sceneql.flows.layout import (
     INVERSES,
     LANES,
     PERIODIC,
+    PUSHED,
     PUSHES,
     SCHEME,
     SKIP,
@@ -284,8 +285,9 @@ def rub(t, y, rate, floats, ints):
     if whole:
         for component in range(ints[AXES]):
             viscous(component, y, rate, floats, ints)
-    for k in range(faces):
-        own[k] += pushes[k] if inverses[k] != 0.0 else 0.0
+    if ints[PUSHED] == 1:
+        for k in range(faces):
+            own[k] += pushes[k] if inverses[k] != 0.0 else 0.0
     for e in range(ints[EDGES]):
         face = ints[EDGE_FACES + e]
         given = floats[ints[EDGE_VALUES] + e] - (y[at + face] if whole else 0.0)

@@ -130,6 +130,8 @@ class _Builder:
         ints[layout.SCALES] = assembly.floats(areas * inverses)
         ints[layout.MOVES] = self._moving(at)
         ints[layout.PUSHES], base, strengths = self._push(pushes, passage.fills)
+        ints[layout.PUSHED] = self.moving is not None or base >= 0 or bool(pushes.any())
+        ints[layout.GIVEN] = self.moving is not None or bool(given.any())
         viscous = [assembly.floats(tie) for tie in passage.ties]
         viscous = (viscous + viscous[:1])[:3]
         ints[layout.VISCOUS : layout.VISCOUS + 3] = viscous

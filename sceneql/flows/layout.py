@@ -45,7 +45,9 @@ LED = 45
 by cell after SEEPING, and then what all push into a closed box, in parts of what they push at all."""
 UNCUT = 46
 """Along x, y, z: the conductance of a face of the box in the pressure's equation."""
-PLANS, PLAN = 47, 24
+PUSHED, GIVEN = 47, 48
+"""1 where something pushes, and where the velocities of some faces are given."""
+PLANS, PLAN = 49, 24
 """Of each axis PLAN integers."""
 KIND, LENGTH, TWIDDLES, TWISTS, FACTORS = 0, 1, 2, 3, 4
 """Of a plan: the modes; length of the Fourier transform; cosines and sines of 2 pi k/length, then of pi k/(2 length);

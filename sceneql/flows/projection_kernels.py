@@ -19,6 +19,7 @@ from sceneql.flows.layout import (
     CONDUCTANCES,
     CUT,
     FACES,
+    GIVEN,
     INVERSES,
     ITERATES,
     LED,
@@ -280,8 +281,9 @@ def project(x, what, floats, ints):
 def constrain(t, y, rate, floats, ints):
     """The rate of velocities that are given is theirs; that of all others loses its divergence."""
     at = ints[AT]
-    for k in range(ints[FACES]):
-        if floats[ints[INVERSES] + k] == 0.0:
-            rate[at + k] = floats[ints[MOVES] + k]
+    if ints[GIVEN] == 1:
+        for k in range(ints[FACES]):
+            if floats[ints[INVERSES] + k] == 0.0:
+                rate[at + k] = floats[ints[MOVES] + k]
     if floats[ints[SKIP]] == 0.0 and not project(rate, RATE, floats, ints):
         rate[at] = math.nan

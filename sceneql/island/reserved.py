@@ -129,6 +129,12 @@ class Reserved:
         numbers[at : at + len(values)] = values
         self._numbers = [numbers]
 
+    def start_at(self, at: int, values: Any) -> None:
+        """Overwrite entries of the state at the start (system.Assembly)."""
+        start = self.start()
+        start[at : at + len(values)] = values
+        self._starts = [start]
+
     def line(self) -> Span | None:
         """The place in the script of the word that is being assembled."""
         return self._word[1]

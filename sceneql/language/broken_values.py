@@ -30,6 +30,9 @@ _CALLED = re.compile(r"(\w+)\(")
 _UNIT = re.compile(r"[^\W\d_]|[%°]")
 NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _ITEM = r"(?:[^(),]|\([^(),]*\))+"
+_LOOP = re.compile(r"\bfor\s+\w+\s+in\b")
+_COPY = re.compile(r"([^\W\d]\w*)\[(\w+)\]((?:\.\w+)+)")
+"""A value of a copy as other languages name it, ``ball[0].position``."""
 _PARENTHESES = re.compile(rf"\(({_ITEM}(?:,{_ITEM})+)\)[ \t]*([^\W\d_][^()\[\]{{}},\s]*)?")
 _ROTATION = re.compile(r"\brotation:\s*\Z")
 _NAMED = re.compile(r"\$?\{\{?\s*([^\W\d][\w.]*)\s*\}\}?")
@@ -113,6 +116,10 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
             called = _CALLED.match(written)
             if called is not None and called[1] not in FUNCTIONS and instead("function", called[1]) is not None:
                 continue  # it is reported where the value is read
+            if _LOOP.search(source.line(source.position(fault.caret)[0])) is not None:
+                help = f"values have no loops; of parts {instead('entry', 'for')}"
+                found.error("syntax", "'for' cannot stand in a value", Span(source, fault.caret, fault.end), help=help)
+                continue
             if (named := _NAMED.fullmatch(written)) is not None:
                 help = f"a name stands by itself: write `{named[1]}`"
                 found.error(
@@ -138,6 +145,8 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
                     message, help = "a unit stands behind its number, without brackets", f"write: {line}"
                 case _ if written.startswith("(") and fault.fixed[0] not in "\"'":
                     message, help = "a vector has no parentheses", f"write: {line}"
+                case _ if _COPY.fullmatch(written) is not None:
+                    message, help = "brackets behind a name mean nothing here", f"write `{fault.fixed}`"
                 case _:
                     message, help = "YAML cuts this expression in two at a comma or bracket", f"quote it: {line}"
             found.error(fault.code, message, Span(source, fault.caret, fault.end), help=help)
@@ -210,6 +219,10 @@ class _Scan:
             return Fault("yaml-syntax", start, end, caret.start, "", diagnostic)
         if (unit := _UNIT_IN_BRACKETS.fullmatch(written)) is not None:
             return Fault("torn-expression", start, end, start, f"{unit[1]} {unit[2]}")
+        if (copy := _COPY.fullmatch(written)) is not None:
+            name, number, rest = copy.groups()
+            fixed = f"{name}.{number}{rest}" if number.isdecimal() else f'"{name}.{{{number}}}{rest}"'
+            return Fault("torn-expression", start, end, start, fixed)
         vector = _PARENTHESES.fullmatch(written)  # as other languages write one
         fixed = _quote(written) if vector is None else _with_unit(vector[1], vector[2] or "")
         fixed = without_letters(written) or fixed

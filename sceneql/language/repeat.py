@@ -84,6 +84,10 @@ def read_repeat(
         if (loop := _RANGE.search(given)) is not None:
             given = loop[1]
         help = f"write `repeat: {{count: {given}, as: i}}`"
+        if isinstance(node, Sequence):
+            help = (
+                "all are one count: write `repeat: {count: 9, as: k}`, and `mod(k, 3)` and `floor(k/3)` in its fields"
+            )
         if isinstance(node, Mapping) and node.entries.keys() & _APART:
             help += ", and say where each is: `position: [i*(0.5 m), 1 m, 0 m]`"
         found.error("repeat-shape", "`repeat` takes a count, and a name for the number", node.span, help=help)

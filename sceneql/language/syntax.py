@@ -9,6 +9,7 @@ import yaml
 
 from sceneql.language.behind_quotes import told_behind
 from sceneql.quantities.diagnostic import Diagnostic, Note
+from sceneql.quantities.spaced import ternary
 from sceneql.quantities.span import Source, Span
 
 _UNPRINTABLE = re.compile("[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -128,6 +129,10 @@ def _in_flow(source: Source, at: int, opening: int) -> Diagnostic:
             return _syntax("fields stand in braces, not in parentheses", source, at, braces)
         if source.text[at : at + 1] == ":":
             help = "a text that holds a colon goes in quotes; items are separated by commas"
+            value = source.text[opening:at].rpartition(": ")[2]
+            rest = re.split(r"[,}\n]", source.text[at + 1 :], maxsplit=1)[0]
+            if (chosen := ternary(f"{value}:{rest}")) is not None:
+                return _syntax("a choice is written otherwise", source, at, f'write `"{chosen}"`')
             if (parted := _PARTED.search(source.text[opening:at])) is not None:
                 help = f"fields are separated by commas: write `{parted[1].strip()}, {parted[2]}: ...`"
             return _syntax("a second colon in this value, where no key can stand", source, at, help)

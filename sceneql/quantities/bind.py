@@ -28,6 +28,7 @@ SECONDS = "the time is `t` here, a plain number of seconds, as all numbers here:
 """The help of the error for `time` with a unit in a formula over plain numbers."""
 _TIMED = re.compile(r"([-+]?\d[\d.]*(?:[eE][-+]?\d+)?\s*)([^\W\d]\w*)\s*\*\s*time")
 """A number with a unit times the time."""
+ENDS = ("low", "high")
 COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
 """Names of a vector's components, by the number of components."""
 
@@ -176,6 +177,11 @@ def _report(node: Expr, parts: tuple[Expr, ...], error: MismatchError, lookup: L
     if time is not None and node.span is not None and isinstance(lookup(("t",), node.span), Symbol):
         time = SECONDS
     message = "`t` behind a unit is a tonne" if time is not None and time != SECONDS else error.message
+    if isinstance(node, Call) and node.op == "random" and len(parts) == len(ENDS) and all(one.span for one in parts):
+        low, high = ("" if one.span is None else one.span.text for one in parts)
+        help = f"write `mix({low}, {high}, random(1))`, of copies with their number, `random(i)`"
+        found.error(error.code, error.message, parts[error.first].span or node.span, help=help)
+        return
     help = time or "; ".join(filter(None, (error.help, _better(node, parts, error) or _by_time(parts, error))))
     found.error(error.code, message, parts[error.first].span or node.span, help=help or None, notes=notes)
 

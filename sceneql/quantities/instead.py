@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from sceneql.quantities.dimension import ANGLE, FREQUENCY, TEMPERATURE, Dimension
-from sceneql.quantities.instead_in_formulas import OF_FORMULAS
-from sceneql.quantities.instead_of_sections import OF_MODELS, OF_SECTIONS
+from sceneql.quantities.instead_in_formulas import OF_FORMULAS, OF_MODELS
+from sceneql.quantities.instead_of_sections import OF_SECTIONS
 from sceneql.quantities.instead_of_words import OF_PARTS
 
 INSTEAD = {
@@ -25,6 +25,8 @@ _ANGLES = re.compile(r"[-+.\de\s]+(deg|rad)")
 _TURNING = re.compile(r"([-+.\d]+)\s*\*\s*time|time\s*\*\s*([-+.\d]+)")
 _UNIT = re.compile(r"\d\s*([^\W\d]\w*)\s*$")
 _TENS = re.compile(r"(?<![\w.])(\d+\.?\d*)\s*[x×·⋅*]\s*10\s*(?:\^|\*\*)\s*\(?([-+−]?\d+)")
+_SEVERAL = {"", "ties", *(what for what, _ in INSTEAD)}
+"""Families, which a sentence on fields may be of."""
 _T = re.compile(r"(?<=[*/])t(?!\w)")
 _TON = re.compile(r"\d\s*[^\s()\[\],]*[*/]t(?!\w)")
 
@@ -43,8 +45,12 @@ def instead(what: str, word: str) -> str | None:
 
 
 def anywhere(word: str) -> str | None:
-    """The help for a word of another program, whatever it was meant as."""
-    found = [(what, help) for (what, other), help in INSTEAD.items() if other == word.lower() and what != "before"]
+    """The help for a word of another program, whatever it was meant as, but a field of a single word alone."""
+    found = [
+        (what, help)
+        for (what, other), help in INSTEAD.items()
+        if other == word.lower() and what != "before" and what.partition(".")[2] in _SEVERAL
+    ]
     return min(found, key=lambda one: "." in one[0], default=("", None))[1]
 
 

@@ -1,4 +1,4 @@
-"""Sentences on sections, models, and the fields of single words and groups: what to write instead of other programs'.
+"""Sentences on sections, and on the fields of single words and groups: what to write instead of other programs'.
 
 For messages alone.
 """
@@ -19,7 +19,7 @@ OF_SECTIONS = (
         "its steps are its own; those that are given are taken by `{rk4: {step: 1 ms}}`, and others of fixed steps",
     ),
     (
-        "field.trail field.tube field.coil field.streamlines field.arrow",
+        "field.trail field.tube field.streamlines field.arrow",
         "width thickness line_width linewidth stroke",
         "half of how thick it is is its `radius: 1 cm`",
     ),
@@ -225,6 +225,66 @@ OF_SECTIONS = (
     ),
     ("field.implicit", "box", "write `bounds: {box: [-1 -1 -1, 1 1 1]}`, the low and the high corner"),
     ("field.implicit", "ball sphere", "write `bounds: {ball: 1.5}`, the radius about the origin"),
+    ("field.coil", "thickness width wire_radius line_width", "half of how thick the wire is is `wire: 1 cm`"),
+    (
+        "field.coil",
+        "pitch height length",
+        "it reaches from end to end, and has so many turns: `from: 0 0 0 m, to: 0 1 0 m, turns: 5`",
+    ),
+    (
+        "field.surface",
+        "z y x height function formula f field",
+        "a height above x and z is a formula, `{implicit: {field: y - 0.3*sin(x)*cos(z), bounds: {box: [-3 -1 -3, 3 1"
+        " 3]}}}`",
+    ),
+    (
+        "field.mesh",
+        "vertices points faces triangles indices",
+        "a file has them, `{mesh: {file: cow.obj}}`; a cage of a few is the `points` of a `blobby`",
+    ),
+    ("field.mirror", "roughness smoothness", "a mirror is wholly smooth: leave it out; `metal` has a `roughness`"),
+    ("field.turntable", "elevation pitch height_angle", "how far it looks down is its `tilt: 20 deg`"),
+    (
+        "field.particles",
+        "region box bounds volume domain area",
+        "masses fill an object: `fill: {object: NAME, count: 1000}`",
+    ),
+    (
+        "field.spring",
+        "x0 center origin anchor point equilibrium",
+        "it pulls two places together: `from: 0 0 0 m`, and the mass's, `to: fall.position`",
+    ),
+    (
+        "field.reaction_diffusion",
+        "du dv f k d_u d_v da db",
+        "each field has its spread and its rate: `species: {u: {coefficient: 2e-5, initial: 1, rate: -u*v^2 + 0.04*(1 -"
+        " u)}, v: {coefficient: 1e-5, initial: 0, rate: u*v^2 - 0.1*v}}`",
+    ),
+    (
+        "field.outline",
+        "depth height extrude thickness_z",
+        "it is flat; a body comes in a file, `{mesh: {file: part.stl}}`, or is made by `union` and `intersection`",
+    ),
+    (
+        "materials",
+        "image texture bitmap photo picture map",
+        "no picture is read here: write a color, or `checker`, or a color that is a formula of x, y, z",
+    ),
+    (
+        "field.objects",
+        "emission emissive emit luminance",
+        "what shines is a material: `material: {glow: {color: orange, strength: 5}}`",
+    ),
+    (
+        "field.diffusion",
+        "velocity flow advection wind carried_by",
+        "what carries it is its drift, by the flow's name: `drift: {by: air}`",
+    ),
+    (
+        "field.collision",
+        "stiffness damping k kn kp kd c penalty spring erp cfm solref solimp",
+        "contacts are hard: `restitution: 0.5` says how much of the speed comes back, and nothing gives way",
+    ),
     ("field.joints", "parent base link relative_to", "write `{of: <parent|shoulder>}`"),
     ("field.images field.image", "format type extension ext", "pictures are PNG files: leave it out"),
     ("field.video", "format type extension ext", "films are MP4 files: leave it out"),
@@ -325,61 +385,5 @@ OF_SECTIONS = (
     ("section", "scene root project", "the sections stand by themselves, with no key around them"),
     ("section", "floor", "write `objects: {floor: plane}`"),
     ("section", "sphere box plane", "write `objects: {name: {sphere: {radius: 1 m}}}`: `sceneql words sections`"),
-)
-"""(what the words were taken for, the words, the sentence)."""
-
-OF_MODELS = (
-    (
-        "models",
-        "skeleton bones bone armature rig ik inverse_kinematics kinematics chain_ik character puppet",
-        "limbs are joints that turn, and objects hang on them: write `{joints: {joints: {shoulder: {at: 0 1 0 m, turn:"
-        ' {about: z, angle: "40 deg*sin(2 rad/s*time)"}}, elbow: {of: shoulder, at: 0.5 0 0 m}}}}`; there is no inverse'
-        " kinematics: angles are told",
-    ),
-    (
-        "models",
-        "rope chain string cord thread wire cable",
-        "write `{mass_spring: {rope: {count: <count|20>, from: <from|0 2 0 m>, to: <to|1 2 0 m>}, mass: 10 g,"
-        " stiffness: <stiffness|1 kN/m>, pins: [start]}}`, or bodies on ties: `sceneql words rod`",
-    ),
-    (
-        "models",
-        "net trampoline sail flag curtain tablecloth towel blanket",
-        "write `{cloth: {size: <size|2 2 m>, pins: [top]}}`",
-    ),
-    (
-        "models",
-        "soft_body softbody soft jelly jello gel rubber_ball deformable_body",
-        "write `{elastic: {of: <of|ball>, law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}}}`, of an object",
-    ),
-    (
-        "models",
-        "balloon bubble skin cell_membrane",
-        "write `{membrane: {of: <of|ball>, law: {tension: 1 N/m}}}`, a skin in a `flow`: `sceneql words membrane`",
-    ),
-    (
-        "models",
-        "dust sparks sparkles snow rain fireworks",
-        "write `{particles: {emit: {rate: 100 /s, velocity: 0 3 0 m/s, lifetime: 2 s}}}`",
-    ),
-    (
-        "models",
-        "spring oscillator harmonic_oscillator spring_mass",
-        "write `{mass_spring: {masses: {hook: {position: 0 2 0 m, fixed: yes}, bob: {position: 0 1 0 m, mass: 1 kg}},"
-        " springs: [{between: [hook, bob], rest: 0.8 m, stiffness: 40 N/m}]}}`",
-    ),
-    (
-        "models",
-        "pendulum simple_pendulum",
-        "write `{equations: {start: {theta: 1, omega: 0}, rate: {theta: omega, omega: -9.81*sin(theta)}}}`; or a body"
-        " hangs on a tie: `sceneql words hinge`",
-    ),
-    (
-        "models",
-        "double_pendulum",
-        "two bodies hang on two ties: `{hinge: {between: [upper, world], at: 0 2 0 m, axis: 0 0 1}}` and `{hinge:"
-        " {between: [upper, lower], at: 0 1 0 m, axis: 0 0 1}}`; or their equations are a model: `sceneql words"
-        " equations`",
-    ),
 )
 """(what the words were taken for, the words, the sentence)."""

@@ -65,7 +65,9 @@ def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[U
         if word.group() in ("x", "y", "z"):
             number = re.search(r"[\d.]*$", text[:at]) or word
             raise ScriptError([replace(found, help=f"write `{number.group()}*{word.group()}` for a product")]) from None
-        raise ScriptError([replace(found, help=hint if found.help is None else f"{found.help}; {hint}")]) from None
+        sure = (found.help or "").startswith("did you mean") and len(word.group()) > 1
+        both = hint if found.help is None else f"{found.help}; {hint}"
+        raise ScriptError([found if sure else replace(found, help=both)]) from None
 
 
 def quantity(number: str, unit: Unit | None, span: Span, divisor: str | None = None) -> Number:

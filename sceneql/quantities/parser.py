@@ -25,8 +25,10 @@ from sceneql.quantities.spaced import (
     by_frame,
     indexed,
     meant_by_equals,
+    modulo,
     other_signs,
     per_unit,
+    ternary,
     two_ends,
     vector_called,
     without_dots,
@@ -253,8 +255,11 @@ class _Parser:
                 plain := from_latex(self.text)
             ):
                 help = f"write `{plain}`"
+            if self.token == "?" and (chosen := ternary(self.text)) is not None:
+                help = f"write `{chosen}`"
             if self.token in "|%@":
-                help = other_signs(self.text) or help
+                plain = modulo(self.text)
+                help = other_signs(self.text) or (plain and f"write `{plain}`") or help
             if self.token in "=.":
                 help = meant_by_equals(self.text) or without_dots(self.text) or help
             name = re.match(WORD, self.text[self.end :])
@@ -297,6 +302,7 @@ class _Parser:
     def _leftover(self, expr: Expr) -> ScriptError:
         if self.kind == "sign" and self.token not in "([":
             help = comma_meant(self.text) if self.token == "," else instead("sign", self.token)
+            help = f"write `{plain}`" if (plain := modulo(self.text)) is not None else help
             return self._fail("syntax", f"'{self.token}' cannot stand here", help=help)
         odd = next((c for c in self.text if not c.isascii() and instead("sign", c)), None)
         if odd is not None:
@@ -305,7 +311,7 @@ class _Parser:
             return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
         if (sides := _crossed(self.text)) is not None:
             help = sides
-        elif (vector := vector_called(self.text) or per_unit(self.text)) is not None:
+        elif (vector := vector_called(self.text) or per_unit(self.text) or ternary(self.text)) is not None:
             help = f"write `{vector}`"
         elif isinstance(expr, Name) and (formula := instead("before", self.before)) is not None:
             help = formula

@@ -118,20 +118,20 @@ def _rate(angle: Expr) -> str | None:
             rate = 1.0
         case Call("neg", (Symbol(),)):
             rate = -1.0
-        case Call("mul", (Number(bare=True) as number, Symbol())) if _written(number):
+        case Call("mul", (Number(bare=True) as number, Symbol())) if _literal(number):
             rate = number.value
-        case Call("mul", (Symbol(), Number(bare=True) as number)) if _written(number):
+        case Call("mul", (Symbol(), Number(bare=True) as number)) if _literal(number):
             rate = number.value
-        case Call("div", (Symbol(), Number(bare=True) as number)) if _written(number) and number.value:
+        case Call("div", (Symbol(), Number(bare=True) as number)) if _literal(number) and number.value:
             rate = 1.0 / number.value
         case _:
             return None
     return f"{rate:.6g} {'deg' if rate and rate % FEWEST_DEGREES == 0 else 'rad'}"
 
 
-def _written(number: Number) -> bool:
-    """Whether a number stands there itself, and no name of one."""
-    return number.span is not None and number.span.text.lstrip("-")[:1] in "0123456789." and "*" not in number.span.text
+def _literal(number: Number) -> bool:
+    """Whether a number stands there by itself, and is no name, and no product that was folded to one."""
+    return number.span is not None and number.span.text.replace(".", "", 1).isdecimal()
 
 
 def alike(sentence: str, *, result_plain: bool = False) -> Rule:

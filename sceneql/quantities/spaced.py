@@ -25,6 +25,10 @@ _CALLED = re.compile(
     r"(?:new\s+)?(?:\w+\.)*\w*?(?:vec|vector|point|array|float3|tuple)\w*\(\s*[\[(]?([^()\[\],]+(?:,[^()\[\],]+){1,2})[\])]?\s*\)",
     re.IGNORECASE,
 )
+_CHOICE = re.compile(r"([^?:]+)\?([^?:]+):([^?:]+)")
+_IF_ELSE = re.compile(r"(.+?)\s+if\s+(.+?)\s+else\s+(.+)")
+_TERM = r"(\d[\d.]*\s+[a-zA-Z]+(?![\w(])|[\w.]+|\([^()]*\))"
+_REST, _QUOTIENT = re.compile(rf"{_TERM}\s*%\s*{_TERM}"), re.compile(rf"{_TERM}\s*//\s*{_TERM}")
 _PER = re.compile(r"\s+per\s+(sec(?:ond)?s?|s|min(?:ute)?s?|hours?|h|m|meters?|metres?)\b")
 _UNITS_BELOW = {"sec": "s", "min": "min", "hou": "h", "met": "m"}
 _RATE = re.compile(r"\bfps\s*:\s*(\d+(?:\.\d+)?)(?![\w.])")
@@ -159,6 +163,21 @@ def other_signs(text: str) -> str | None:
         return f"write `{plain}`"
     whole = re.fullmatch(r"\s*([\w.()*/ ]+?)\s*%\s*([\w.]+(?:\s*[a-zA-Z]+)?)\s*", text)
     return None if whole is None else f"write `mod({whole[1]}, {whole[2]})`"
+
+
+def ternary(text: str) -> str | None:
+    """A choice of other languages, ``c ? a : b`` or ``a if c else b``, as ``where(c, a, b)``; None of other texts."""
+    found = _CHOICE.fullmatch(text.strip())
+    if found is not None:
+        return f"where({found[1].strip()}, {found[2].strip()}, {found[3].strip()})"
+    found = _IF_ELSE.fullmatch(text.strip())
+    return None if found is None else f"where({found[2].strip()}, {found[1].strip()}, {found[3].strip()})"
+
+
+def modulo(text: str) -> str | None:
+    """A formula with the signs of other languages for rests and whole quotients as functions; None without any."""
+    plain = _REST.sub(r"mod(\1, \2)", _QUOTIENT.sub(r"floor(\1/\2)", text.strip()))
+    return None if plain == text.strip() or re.search(r"%|//", plain) else plain
 
 
 def per_unit(text: str) -> str | None:

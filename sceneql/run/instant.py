@@ -75,11 +75,13 @@ class Instant:
     """The runs of variants shown in panels beside this one, which share one framing."""
     room: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     """Margins covered by overlays at the picture's left, top, right and bottom, as parts of width and height."""
+    rooms: tuple[tuple[float, tuple[float, float, float, float]], ...] = ()
+    """The margins that are needed at some instants [s] of the film; without any they are always ``room``."""
     shown: tuple[Drawn, ...] | None = None
     """The shapes of the picture in the making; None before they are known."""
     _states: dict[str, ModelState] = field(default_factory=dict)
     _values: dict[tuple[str, str], tuple[Any, bool]] = field(default_factory=dict)
-    """Cache of formulas of other parts, by part and output: the value, and whether it varies."""
+    """Cache of outputs of other parts, by part and output: the value, and whether it varies."""
 
     @property
     def time(self) -> float:
@@ -133,7 +135,10 @@ class Instant:
         """An output of a part now."""
         kind = self.run.graph.tasks[task].kind
         if isinstance(kind, Model | Contact | Tie) and not (isinstance(kind, Model) and kind.kinematic):
-            return kind.read(output, self.state(task))
+            state = self.state(task)
+            if (task, output) not in self._values:  # two hundred tubes may go through one list of places
+                self._values[task, output] = kind.read(output, state), True
+            return self._values[task, output][0]
         if isinstance(kind, Object) and output in kind.gives:
             return kind.read(output, self)
         if (task, output) not in self._values:

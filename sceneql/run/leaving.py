@@ -1,4 +1,4 @@
-"""Detection of the few moving things that leave a scene for good; the default camera then frames the others."""
+"""Detection of moving things that leave a scene for good, a few or by falling; the default camera frames the others."""
 
 from __future__ import annotations
 
@@ -23,6 +23,8 @@ FEW = 0.25
 falls below all that stands, as balls that miss a bowl: it would make that a dot."""
 NEAR = 1.0
 """Width of the margin around the scene, relative to the scene's diagonal, outside which a thing has left it."""
+UNDER = 0.25
+"""Part of this margin by which what falls below all that stands is followed."""
 LAST = 0.25
 """Final fraction of the film during which the distance of a leaving thing must grow all the time."""
 
@@ -82,13 +84,18 @@ def let_go(paths: Paths, still: Iterable[tuple[Floats, Floats]]) -> tuple[list[L
         for name, boxes in paths.boxes.items()
         if len(boxes) == len(paths.times) and len({len(low) for low, _ in boxes}) == 1
     }
-    if len(paths.times) < 4 or not steady or len(steady) < len(paths.boxes):
+    loose = {name: boxes for name, boxes in paths.boxes.items() if name not in steady}
+    unmoved = list(still)
+    if len(paths.times) < 4 or not paths.boxes or (loose and not unmoved):
         return [], None
+    level = min((float(low[1]) for low, _ in unmoved), default=-np.inf)
+    found, whole = _fallen(paths.times, loose, level, [*unmoved, *(boxes[0] for boxes in steady.values())])
+    if not steady:
+        return (found, whole) if found else ([], None)
     lows = np.concatenate([np.stack([low for low, _ in boxes], axis=1) for boxes in steady.values()])
     highs = np.concatenate([np.stack([high for _, high in boxes], axis=1) for boxes in steady.values()])
     if len(lows) > MOST or not (np.isfinite(lows).all() and np.isfinite(highs).all()):
         return [], None
-    unmoved = list(still)
     low = np.min([lows[:, 0].min(axis=0), *(one for one, _ in unmoved)], axis=0)
     high = np.max([highs[:, 0].max(axis=0), *(one for _, one in unmoved)], axis=0)
     margin = NEAR * float(np.linalg.norm(high - low))
@@ -96,21 +103,50 @@ def let_go(paths: Paths, still: Iterable[tuple[Floats, Floats]]) -> tuple[list[L
     far = np.linalg.norm((lows + highs) / 2 - (low + high) / 2, axis=2)
     last = max(2, int(LAST * len(paths.times)))
     leaves = outside[:, -1] & (np.diff(far[:, -last:], axis=1) > 0).all(axis=1)
-    if leaves.sum() > FEW * len(leaves):
-        under = highs[:, -1, 1] < min((float(one[1]) for one, _ in unmoved), default=-np.inf) - margin
-        if not under[leaves].all():
-            return [], None
-    if not leaves.any():
+    falls = leaves & (highs[:, -1, 1] < level - margin)
+    if (leaves & ~falls).any() and leaves.sum() > FEW * len(leaves):
+        leaves[:] = falls[:] = False
+    if not leaves.any() and not found:
         return [], None
-    # A thing has left from the instant on after which it is outside up to the end.
-    since = outside.shape[1] - np.argmin(outside[:, ::-1], axis=1)
-    kept = np.arange(outside.shape[1])[None, :] < np.where(leaves, since, outside.shape[1])[:, None]
-    found, first = [], 0
+    # A thing has left from the instant on after which it is outside, or below all, up to the end.
+    beyond = outside | (falls[:, None] & (highs[:, :, 1] < level - UNDER * margin))
+    since = beyond.shape[1] - np.argmin(beyond[:, ::-1], axis=1)
+    kept = np.arange(beyond.shape[1])[None, :] < np.where(leaves, since, beyond.shape[1])[:, None]
+    first = 0
     for name, boxes in steady.items():
         mine = slice(first, first + len(boxes[0][0]))
         first = mine.stop
         if leaves[mine].any():
             when = paths.times[int(since[mine][leaves[mine]].min())]
             found.append(Leaving(name, int(leaves[mine].sum()), len(boxes[0][0]), when))
-    whole = np.min([lows[kept].min(axis=0), low], axis=0), np.max([highs[kept].max(axis=0), high], axis=0)
-    return found, whole
+    low, high = np.minimum(low, whole[0]), np.maximum(high, whole[1])
+    return found, (np.minimum(lows[kept].min(axis=0), low), np.maximum(highs[kept].max(axis=0), high))
+
+
+def _fallen(
+    times: Sequence[float],
+    loose: Mapping[str, Sequence[tuple[Floats, Floats]]],
+    level: float,
+    others: Iterable[tuple[Floats, Floats]],
+) -> tuple[list[Leaving], tuple[Floats, Floats]]:
+    """Of parts whose things come and go: those with things that fall below a ``level`` [m], and the box of all else.
+
+    ``others``: boxes of what else is there at the start.
+    """
+    corners = [np.concatenate([np.atleast_2d(side) for side in sides]) for sides in zip(*others, strict=True)]
+    low, high = corners[0].min(axis=0), corners[1].max(axis=0)
+    every = [box for boxes in loose.values() for box in boxes]
+    lows = np.concatenate([np.zeros((0, 3)), *(one for one, _ in every)])
+    highs = np.concatenate([np.zeros((0, 3)), *(one for _, one in every)])
+    above = np.isfinite(lows).all(axis=1) & (highs[:, 1] >= level)
+    low = np.minimum(low, lows[above].min(axis=0, initial=np.inf))
+    high = np.maximum(high, highs[above].max(axis=0, initial=-np.inf))
+    margin = NEAR * float(np.linalg.norm(high - low))
+    found = []
+    for name, boxes in loose.items():
+        under = [int((one[1][:, 1] < level - margin).sum()) for one in boxes]
+        if under[-1] > 0:
+            found.append(Leaving(name, under[-1], len(boxes[-1][0]), times[int(np.argmax(np.array(under) > 0))]))
+    near = np.isfinite(lows).all(axis=1) & ((highs[:, 1] >= level - UNDER * margin) | (not found))
+    low = np.minimum(low, lows[near].min(axis=0, initial=np.inf))
+    return found, (low, np.maximum(high, highs[near].max(axis=0, initial=-np.inf)))

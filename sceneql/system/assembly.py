@@ -50,6 +50,9 @@ class Assembly(Protocol):
     def write(self, at: int, values: Any) -> None:
         """Overwrite floats[at : at + len(values)], which were stored before."""
 
+    def start_at(self, at: int, values: Any) -> None:
+        """Overwrite y[at : at + len(values)] at the start, which was reserved before."""
+
     def value(self, value: Value) -> int:
         """Store a value of the script in the floats; returns its offset.
 

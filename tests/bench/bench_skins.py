@@ -35,6 +35,7 @@ FOLDER = Path(tempfile.mkdtemp())
 WAVES = "{left: {periodic: yes}, bottom: {periodic: yes}}"
 ELLIPSE = "x^2/0.75^2 + y^2/0.5^2 - 1"
 EGG = "(x/0.75)^2 + (y/0.5)^2 + (z/0.55)^2 - 1"
+SMALL_EGG = "(x/0.68)^2 + (y/0.45)^2 + (z/0.5)^2 - 1"
 STAR = "hypot(x, y) - 0.55*(1 + 0.25*cos(3*atan2(y, x)) + 0.1*sin(2*atan2(y, x)))"
 SHEAR = (("bottom", -1), ("top", 1))
 SHAPES = {"ring": (ELLIPSE, 0.5), "star": (STAR, 0.4)}
@@ -171,7 +172,7 @@ def share(cells: str) -> None:
     taken = []
     for alone in (False, True):
         law, more = "law: {springs: {stretch: 10 N/m}}, prestress: 3 N/m", f", spacing: {1.0 * 3 / int(cells)!r} m"
-        made = Balloon(EGG, law, int(cells), "{sbdf2: {step: 5 ms}}", 1.0, deep=True, more=more, alone=alone)
+        made = Balloon(SMALL_EGG, law, int(cells), "{sbdf2: {step: 5 ms}}", 1.0, deep=True, more=more, alone=alone)
         if not alone:
             print(f"{made.read('count'):.0f} vertices")
         made.run.advance(0.02)

@@ -66,9 +66,11 @@ class Body(Record):
     )
     position: kinds.FixedPosition | None = field("Where its origin starts; by default the object's place.", None)
     rotation: kinds.Rotation | None = field("How it is turned at the start; by default as the object is.", None)
-    velocity: kinds.FixedVelocity = field("Velocity of its center of mass at the start.", "0 0 0 m/s")
+    velocity: kinds.FixedVelocity = field(
+        "Velocity of its center of mass at the start; where ties hold it and this is 0, what they ask for.", "0 0 0 m/s"
+    )
     spin: Annotated[Triple, Quantity(dim.FREQUENCY, (3,), turning=True)] = field(
-        "Angular velocity at the start, in the world's axes [rad/s].", "0 0 0 rad/s"
+        "Angular velocity at the start, in the world's axes [rad/s]; with ties as the velocity.", "0 0 0 rad/s"
     )
     fixed: bool = field("It never moves.", False)
     points: dict[str, kinds.FixedPosition] = field(

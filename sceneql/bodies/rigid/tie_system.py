@@ -44,6 +44,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     from sceneql.bodies.rigid import tie_matrix_kernels as matrix
     from sceneql.bodies.rigid.tie_kernels import survey
     from sceneql.bodies.rigid.tie_rows_kernels import MOVED, ROW
+    from sceneql.bodies.rigid.tie_start import follow
     from sceneql.linear.multifrontal.planning import plan
 
     movers: dict[tuple[int, ...], int] = {}
@@ -139,6 +140,8 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     _add_pivots(assembly, ties)
     numbers = assembly.numbers()
     survey(0.0, assembly.start(), numbers, np.array(ints))
+    if follow(assembly, ties, numbers, {one[1]: moved + MOVED * k for one, k in movers.items() if one[0] >= 0}):
+        survey(0.0, assembly.start(), numbers, np.array(ints))
     if redundant(ties, numbers)[1] == 0:
         assembly.write(ease, [0.0])
     _must_agree(ties, numbers)

@@ -15,7 +15,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from sceneql import kinds
-from sceneql.compiler.annotations import quantities
+from sceneql.compiler.annotations import marks_of, quantities
 from sceneql.compiler.meant import quantity_help as helped
 from sceneql.compiler.meant.by_size import by_own_size
 from sceneql.compiler.meant.values_elsewhere import along_default, elsewhere, first_of, middle_of_ends
@@ -31,11 +31,18 @@ LONGEST = 160
 """Largest length of a value that is mended."""
 STEPS, TRIES = 6, 24
 """Largest numbers of mistakes in a row, and of texts that are read, until a value is mended."""
+_FRAMES = re.compile(r"(\d+(?:\.\d+)?)\s*(?:frames?|f)")
 _SHOWN = re.compile(r"`([^`]+)`")
 _NUMBER = re.compile(r"(?<![\w.])\d+\.?\d*(?:[eE][-+]?\d+)?")
-_WRITTEN = re.compile(r"(?:write|is written|did you mean|as) [`']([^`]+?)[`'](?:\?|;|,|:|$| )")
+_WRITTEN = re.compile(r"(?:write|is written|did you mean) [`']([^`]+?)[`'](?:\?|;|,|:|$| )")
 
 
+AXES = {
+    f"{sign}{axis}": " ".join(f"{sign}1" if one == axis else "0" for one in "xyz")
+    for sign in ("", "-")
+    for axis in "xyz"
+}
+"""Directions by the names of axes."""
 PLANAR = "is a vector of 3, not a vector of 2"
 """What is told of a vector without one of its components."""
 SINGLE = " is a single value, not a vector"
@@ -49,7 +56,8 @@ def improve(reader: Any, written: Naming[str, Node], cls: type[BaseModel], name:
     """
     better_alone(reader, written, cls, name, title, before)
     found = reader.found.found
-    if isinstance(written[name], Mapping) or len(found) == before:
+    turns = any(isinstance(mark, kinds.Turn) for mark in marks_of(field_of(cls, name)))
+    if (isinstance(written[name], Mapping) and not turns) or len(found) == before:
         return
     if (final := mended(reader, written[name], cls, name)) is not None and final[1] > 1:
         help = found[before].help
@@ -70,12 +78,21 @@ def better_alone(
     code, help = told[0]
     if code == "unknown-name" and helped.is_part(reader, node):
         found[before] = replace(found[before], help=helped.other_output(reader, node, info, name) or help)
+    elif code == "unknown-name" and any(mark.direction for mark in quantities(info)) and node.span.text in AXES:
+        found[before] = replace(found[before], help=f"write `{name}: {AXES[node.span.text]}`")
     elif code == "unknown-name" and (plain := _one_for_all(node, info, name, title)) is not None:
         found[before] = replace(found[before], help=plain)
     elif code in ("unknown-name", "unknown-unit"):
         found[before] = replace(found[before], help=helped.number_meant(node, info, name, code, help) or help)
     if name == "sweep" and code == "wrong-shape" and isinstance(node, Scalar):
         found[before] = replace(found[before], help=_swept(reader, written, node.text) or help)
+    if code == "unknown-unit" and (frames := _FRAMES.fullmatch(node.span.text.strip())) is not None:
+        rate = written["fps"].span.text if "fps" in written else str(helped.FRAMES)
+        if rate.replace(".", "", 1).isdecimal() and float(rate) > 0:
+            time = f"{float(frames[1]) / float(rate):.6g} s"
+            found[before] = replace(
+                found[before], help=f"it is a time: at {rate} frames a second write `{name}: {time}`"
+            )
     single = [mark.shape == () for mark in quantities(info)]
     if (help or "").startswith("two ends stand") and single and all(single):
         fields = [kinds.written_name(key) for key in cls.model_fields]
@@ -193,9 +210,20 @@ def _shown_from(text: str, start: int, end: int, meant: str) -> tuple[int, int]:
 
 
 def _replaced(text: str, told: Collection[tuple[int, int, str]]) -> str:
-    """A text with pieces of it, from a start to an end, replaced."""
+    """A text with pieces of it, from a start to an end, replaced.
+
+    What stands for a piece may have what is around it, too, as ``sin(time/(1 s))`` for ``time`` in ``sin(time)``: it
+    stands for as much of the text as it repeats.
+    """
     for start, end, meant in sorted(told, reverse=True):
-        text = text[:start] + meant + text[end:]
+        found = meant.find(text[start:end])
+        at = max((k for k in range(found + 1) if text[:start].endswith(meant[:k])), default=0)
+        if at > 0:
+            rest = meant[found + end - start :]
+            again = next(rest[k:] for k in range(len(rest) + 1) if text[end:].startswith(rest[k:]))
+            text = text[: start - at] + meant + text[end + len(again) :]
+        else:
+            text = text[:start] + meant + text[end:]
     return text
 
 
@@ -214,7 +242,10 @@ def _keeps(text: str, better: str, names: Names) -> bool:
     left = iter(own := _NUMBER.findall(better))
     before = _NUMBER.findall(text)
     words = [one for one in re.findall(r"[^\W\d]\w*", text) if one in names.defines or one in names.parts]
-    known = all(re.search(rf"\b{re.escape(one)}\b", better) for one in words)
+    spare = {one: own.count(one) for one in own if one not in ("0", "1")}
+    known = all(spare[one] <= before.count(one) for one in spare) and all(
+        re.search(rf"\b{re.escape(one)}\b", better) for one in words
+    )
     return known and all(number in left for number in before) and {*own} <= {*before, "0", "1"}
 
 

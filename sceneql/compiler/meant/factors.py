@@ -15,6 +15,7 @@ from sceneql.quantities.units import describe, unit_of
 
 _MISSING = (
     (DENSITY, "(1000 kg/m^3)", "a density"),
+    (ENERGY / TEMPERATURE, "(4.2e6 J/K)", "what all of it takes to be a kelvin warmer"),
     (LENGTH**3 / MASS / TIME**2, "(6.674e-11 m^3/(kg*s^2))", "the constant of gravity"),
     (DENSITY * ENERGY / MASS / TEMPERATURE, "(4.2e6 J/(K*m^3))", "what a volume takes to be a kelvin warmer"),
 )
@@ -61,7 +62,7 @@ def _factor(expr: Expr, wanted: Dimension | None) -> str | None:
     if has is not None and wanted is not None and expr.span is not None:
         metal = isinstance(expr, Number) and isinstance(expr.value, float | int) and expr.value > OF_METALS
         for kind, factor, word in _MISSING:
-            factor = factor.replace("4.2e6", "3.5e6") if metal else factor  # of water
+            factor = factor.replace("4.2e6 J/(K*m", "3.5e6 J/(K*m") if metal else factor  # of water
             if has * kind == wanted:
                 return f"multiply it by {word}: write `{expr.span.text}*{factor}`"
             if has / kind == wanted:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator
+from collections.abc import Mapping as Naming
 from collections.abc import Sequence as Sequenced
 from contextlib import suppress
 from dataclasses import replace
@@ -21,10 +22,10 @@ from sceneql.compiler.annotations import example_of, first_field, is_fixed, mark
 from sceneql.compiler.meant.by_record import by_record
 from sceneql.compiler.meant.chained import mended
 from sceneql.compiler.meant.own_examples import own_example
-from sceneql.compiler.meant.quantity_help import NAME, TRUE
+from sceneql.compiler.meant.quantity_help import NAME, TRUE, other_output
 from sceneql.compiler.meant.together import together
 from sceneql.compiler.meant.unknown import meant_field
-from sceneql.compiler.meant.values_elsewhere import quantities_fitting
+from sceneql.compiler.meant.values_elsewhere import along_default, quantities_fitting
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
@@ -48,6 +49,7 @@ OF_FORM = (
     "wrong-shape",
 )
 """Codes of errors of a value that may be meant for a field though it does not take it so."""
+LETTERS = "abcdefghijklmnopqrstuvwxyz"
 SHOWN = 60
 """Longest value that a message repeats behind the field that is meant."""
 USUAL_FORCE = "electrostatic"
@@ -134,35 +136,42 @@ def meant(reader: Any, cls: type[BaseModel], node: MappingNode) -> set[str | Non
     return found
 
 
-def inside(reader: Any, cls: type[BaseModel], name: str, node: Node) -> str | None:
+def inside(
+    reader: Any, cls: type[BaseModel], name: str, node: Node, written: Naming[str, Node] | None = None
+) -> str | None:
     """The help for a field of a record in one of a record's fields, or of the record around it, or a part in place.
 
-    That is meant first which takes the value.
+    That is meant first which takes the value. ``written``: the fields that are looked at, as they are written, where
+    these are not all.
     """
+    text = node.span.text if "\n" not in node.span.text and len(node.span.text) <= SHOWN else "..."
+    for key, value in (written or {}).items():
+        info = _known(cls, key)
+        held = [] if info is None else [arm for arm in (info.annotation, *get_args(info.annotation)) if _is_record(arm)]
+        if any(_known(arm, name) is not None for arm in held):
+            own = [kinds.written_name(each) for each, field in held[0].model_fields.items() if field.is_required()]
+            before = f"{own[0]}: {value.span.text}, " if isinstance(value, Scalar) and len(own) == 1 else "..., "
+            return f"it stands inside `{key}`: write `{key}: {{{before}{name}: {text}}}`"
+    if written is not None:
+        return None
     plain = node.text if isinstance(node, Scalar) else ""
     if issubclass(cls, kinds.Record) and (told := cls.meant_by(plain)) is not None:
         return told
-    text = node.span.text if "\n" not in node.span.text and len(node.span.text) <= SHOWN else "..."
     if (field := taking_word(reader, cls, name)) is not None:
         return f"write `{field}: {{{name}: {text or '{}'}}}`"
     if (each := _for_each(reader, name)) is not None:
         return each
     found: list[tuple[bool, str]] = []
     for key, info in cls.model_fields.items():
-        inner = [one for one in (info.annotation, *get_args(info.annotation)) if isinstance(one, type)]
-        for one in inner:
-            if (
-                issubclass(one, BaseModel)
-                and not issubclass(one, kinds.Kind)
-                and (own := _known(one, name)) is not None
-            ):
+        for arm in (info.annotation, *get_args(info.annotation)):
+            if _is_record(arm) and (taken := _known(arm, name)) is not None:
                 field = kinds.written_name(key)
                 told = f"it stands inside `{field}`: write `{field}: {{{name}: {text}}}`"
-                found.append((wrong_as(reader, node, own, name) is not None, told))
+                found.append((wrong_as(reader, node, taken, name) is not None, told))
     outer: type[BaseModel] | None = reader.outer
-    if outer is not None and (own := _known(outer, name)) is not None:
+    if outer is not None and (taken := _known(outer, name)) is not None:
         told = f"it stands outside of these braces: write `{{..., {name}: {text}}}` around them"
-        found.append((wrong_as(reader, node, own, name) is not None, told))
+        found.append((wrong_as(reader, node, taken, name) is not None, told))
     return min(found, key=lambda one: one[0])[1] if found else None
 
 
@@ -181,6 +190,11 @@ def _for_each(reader: Any, name: str) -> str | None:
     word = (used or [one for one in words if one == USUAL_FORCE] or words)[0]
     told = f"{{{word}: {{{name}: [{', '.join(each)}]}}}}"
     return f"it is a force's, one for each in their order: write `forces: {{all: {told}}}`"
+
+
+def _is_record(arm: Any) -> bool:
+    """Whether an annotation is a record that is no word."""
+    return isinstance(arm, type) and issubclass(arm, BaseModel) and not issubclass(arm, kinds.Kind)
 
 
 def _known(cls: type[BaseModel], name: str) -> Any:
@@ -251,6 +265,10 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         plain = list(quantities_fitting(reader, bare, cls.model_fields))
         if len(plain) == 1:
             return f"it has no unit: write `{{{kinds.written_name(plain[0])}: {number[1]}}}`"
+    if not fitting and not alone and (named := _named(reader, node, cls)) is not None:
+        return named
+    if not fitting and (along := _along(reader, node, cls)) is not None:
+        return along
     likely = alone or [kinds.written_name(name) for name in fitting] or _paints(reader, node, cls)
     if len(likely) != 1:
         return None
@@ -261,6 +279,30 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     if text.startswith("-") and above and (why := instead("negative", likely[0])) is not None:
         return f"write `{{{likely[0]}: {text[1:].strip()}}}`: {why}"
     return f"write `{{{likely[0]}: {text}}}`"
+
+
+def _named(reader: Any, node: Scalar, cls: type[BaseModel]) -> str | None:
+    """The help for a part's name in place of a record that refers to a part, or reads one, in one field: a drift."""
+    if node.text not in reader.names.parts:
+        return None
+    families = reader.names.catalogue.families_of(reader.names.parts[node.text].word)
+    told = []
+    for key, info in cls.model_fields.items():
+        name = kinds.written_name(key)
+        if any(isinstance(mark, kinds.Refers) and mark.family in families for mark in marks_of(info)):
+            told.append(f"{{{name}: {node.text}}}")
+        elif any(mark.dimension is None for mark in quantities(info)):
+            other = other_output(reader, node, info, name)
+            told += [] if other is None else [f"{{{name}: {other.split('`')[1]}}}"]
+    return f"write `{told[0]}`" if len(told) == 1 else None
+
+
+def _along(reader: Any, node: Scalar, cls: type[BaseModel]) -> str | None:
+    """The help for one number in place of a record whose one vector of its dimension points along an axis: a wind."""
+    found = [(key, text) for key, info in cls.model_fields.items() if (text := along_default(node, info)) is not None]
+    if len(found) != 1:
+        return None
+    return f"write `{{{kinds.written_name(found[0][0])}: {found[0][1].split('`')[1]}}}`"
 
 
 def _dealt(reader: Any, node: Sequence, cls: type[BaseModel], required: Sequenced[str]) -> str | None:
@@ -329,8 +371,10 @@ def by_name(node: Node, item: Any, parts: bool) -> str:
     if record and items and len(texts) == len(items):
         return f"write `{{{', '.join(texts)}}}`, the name of each before its fields"
     if not record and len(items) > 1 and all(isinstance(one, Scalar) for one in items):
-        pairs = zip("abcdefghijklmnopqrstuvwxyz", items, strict=False)
-        return f"each has a name of its own: write `{{{', '.join(f'{name}: {one.span.text}' for name, one in pairs)}}}`"
+        names = [one.span.text.rpartition(".")[2] for one in items]
+        own = names if len({*names}) == len(items) and all(map(str.isidentifier, names)) else [*LETTERS]
+        told = ", ".join(f"{name}: {one.span.text}" for name, one in zip(own, items, strict=False))
+        return f"each has a name of its own: write `{{{told}}}`"
     first = items[0].span.text if items else "name"
     first = first if first.isidentifier() else "name"
     example = first_field(item) if record else "..."

@@ -21,7 +21,7 @@ from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import STRONG, Diagnostics, nearest, same_as
 from sceneql.quantities.instead import instead
 
-ORDER = ("outputs", "cameras", "solvers", "objects", "contacts", "lights", "overlays", "materials", "models", "forces")
+ORDER = ("solvers", "outputs", "cameras", "objects", "contacts", "lights", "overlays", "materials", "models", "forces")
 """Families in whose words a field is looked for, the likeliest first."""
 PLAIN = 3
 """Number of the first of them whose fields by other names are meant by nothing else."""

@@ -17,6 +17,9 @@ def own_example(names: Names, info: Any) -> str | None:
 
     None, too, where the script has no such parts.
     """
+    if "position of a mass" in (info.description or ""):
+        bodies = _bodies(names, kinds.Refers("models", bodies=True))
+        return next((f"{one}.position" for one in bodies), None)
     mark = next((one for one in marks_of(info) if isinstance(one, kinds.Refers)), None)
     if mark is None or get_origin(info.annotation) is dict:
         return None

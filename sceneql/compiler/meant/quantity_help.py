@@ -69,6 +69,10 @@ def other_output(reader: Any, node: Node, info: Any, name: str) -> str | None:
         if any(values.read_value(one, mark, name, names, nothing) is not None for mark in marks):
             found.append(one.text)
     found = [one for one in found if one != node.text]
+    fields = reader.names.parts[part].fields
+    of = fields.entries.get("of") if isinstance(fields, MappingNode) else None
+    if of is not None and f"{part}.{of.span.text}" in found:  # a field has the name of what it is of, too
+        found = [f"{part}.{of.span.text}"]
     places = [one for one in found if one.endswith(("position", "positions"))]
     told = (places or found)[:OUTPUTS]
     return f"write {' or '.join(f'`{one}`' for one in told)}" if told else None

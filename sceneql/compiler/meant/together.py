@@ -24,6 +24,12 @@ CORNERS = (
 """Fields of other programs for the corners of a box."""
 FEWEST = 2
 """Least number of members of what is made of several."""
+BEGINS, ENDS = ("start", "from", "begin", "t0", "after"), ("end", "to", "until", "stop", "t1", "before")
+"""Fields of other programs for the times between which something is to be seen."""
+SLOW = ("slowmo", "slowmotion", "slowdown", "slow")
+STRENGTHS = ("value", "strength", "magnitude", "torque", "force", "size", "amount", "moment")
+WAYS = ("axis", "direction", "about", "dir")
+"""Fields of other programs for a vector's size and its direction."""
 SIZES = ("width", "height", "depth", "length")
 TURNS = ("rotation", "turn")
 """Fields that turn a part."""
@@ -40,7 +46,8 @@ def together(name: str, unknown: Sequenced[str], node: Mapping, known: Collectio
     """The help for fields that are one here: ``from: a, to: b``, and items of a list without brackets."""
     told = _turned(name, unknown, node, known) or _by_frames(name, node, known) or _by_cells(name, node, known)
     told = told or _corners(name, unknown, node, known) or _members(name, unknown, node, known)
-    told = told or _states(name, unknown, node, known)
+    told = told or _states(name, unknown, node, known) or _slower(name, node, known)
+    told = told or _along(name, unknown, node, known) or _shown(name, unknown, node, known)
     if told is not None:
         return told
     ours = same_as(name, known)
@@ -163,3 +170,42 @@ def _states(name: str, unknown: Sequenced[str], node: Mapping, known: Collection
     start = ", ".join(f"{one}: {node.entries[one].span.text}" for one in unknown if one not in rates)
     rate = ", ".join(f"{of}: {node.entries[one].span.text}" for one, of in rates.items())
     return f"write `start: {{{start or '...'}}}` and `rate: {{{rate or '...'}}}`"
+
+
+def _slower(name: str, node: Mapping, known: Collection[str]) -> str | None:
+    """The help for how many times slower a film is."""
+    if name.replace("_", "").lower() not in SLOW or not {"speed", "fps"} <= {*known}:
+        return None
+    try:
+        times = float(node.entries[name].span.text.strip("x "))
+    except ValueError:
+        return None
+    slower = 1.0 / times if times > 1.0 else times
+    return f"`speed` is seconds of simulation in a second of film: write `speed: {slower:.6g}`" if times > 0 else None
+
+
+def _along(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for the size and the axis of a vector of formulas: ``value: 2 N*m, axis: y``."""
+    size = next((one for one in unknown if one in STRENGTHS), None)
+    axis = next((one for one in unknown if one in WAYS), None)
+    if "components" not in known or "components" in node.entries or size is None or axis is None:
+        return None
+    text, way = node.entries[size].span.text, node.entries[axis].span.text
+    letters = {"x": "1 0 0", "y": "0 1 0", "z": "0 0 1"}
+    numbers = letters.get(way, way).strip("[]").replace(",", " ").split()
+    if len(numbers) != len(letters) or sorted(numbers) != ["0", "0", "1"]:
+        return None
+    return f"write `components: [{', '.join(text if one == '1' else '0' for one in numbers)}]`"
+
+
+def _shown(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for the times from when and to when something is to be seen."""
+    if not {"show", "fade"} <= {*known} or "show" in node.entries or name not in (*BEGINS, *ENDS):
+        return None
+    first = next((node.entries[one].span.text for one in unknown if one in BEGINS), None)
+    last = next((node.entries[one].span.text for one in unknown if one in ENDS), None)
+    after = None if first is None or first.strip("0. ") in ("", "s") else f"(time > {first})"
+    before = None if last is None else f"(time < {last})"
+    if after is None and before is None:
+        return "it is there from the start: leave it out"
+    return f"from when to when it is there is said by `show`: write `show: {'*'.join(filter(None, (after, before)))}`"

@@ -57,7 +57,7 @@ def report_unknown(
     renamed: Renamed | None = None,
     catalogue: Vocabulary | None = None,
     table: str = "",
-    inside: Callable[[str, Node], str | None] = lambda name, value: None,
+    inside: Callable[..., str | None] = lambda name, value, written=None: None,
     whole: Callable[[str, Mapping], str | None] = lambda name, node: None,
 ) -> bool:
     """Report the fields of a mapping that are not among the known ones; returns whether there are none.
@@ -70,11 +70,16 @@ def report_unknown(
     offer = renamed or (lambda field, value: (True, f"did you mean '{field}'?"))
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
-        help = (said_by or {}).get(name) or whole(name, node) or instead(f"field.{title.partition('.')[0]}", name)
-        help = (help and filled(help, node.entries[name], known)) or together(name, unknown, node, known)
+        help = together(name, unknown, node, known)
+        help = (
+            help or (said_by or {}).get(name) or whole(name, node) or instead(f"field.{title.partition('.')[0]}", name)
+        )
+        help = help and filled(help, node.entries[name], known)
         if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
             space = ", with a space behind the colon" if written[2] else ""
             help = f"write `{written[1]}: {written[3].strip()}`{space}"
+        beside = {one: each for one, each in node.entries.items() if one in known}
+        help = help or inside(name, node.entries[name], beside)
         same = [] if help else [one for one in all_same_as(name, known) if one not in node.entries]
         offers = [offer(one, node.entries[name]) for one in same]
         help = help or next((text for fits, text in offers if fits), None)
@@ -84,6 +89,8 @@ def report_unknown(
         help = help or inside(name, node.entries[name])
         help = help or _like(name, node.entries[name], known, offer, family, catalogue)
         help = help or _of_inner(node.entries[name])
+        if help is None and len(known) == 1 and (only := offer(next(iter(known)), node.entries[name]))[0]:
+            help = only[1]
         if help is None and len(known) == 1:
             help = f"it stands inside: `{{{next(iter(known))}: {{{name}: ...}}}}`"
         if help is None and table and table not in node.entries:
@@ -184,6 +191,8 @@ def word_meant(
         return joined
     if (same := same_as(entry.word, words)) is not None:
         return f"did you mean '{same}'?"
+    if family == "materials" and (other := instead(family, entry.word)) is not None:
+        return other
     if others := catalogue.families_of(entry.word):
         return f"it belongs under '{others[0]}:'"
     if fields is None and not entry.word.isidentifier() and (having := having_fields([entry.name], family, catalogue)):

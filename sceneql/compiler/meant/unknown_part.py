@@ -14,13 +14,16 @@ from sceneql.compiler.names import Names
 from sceneql.kinds import Refers
 from sceneql.language.repeat import copy_meant
 from sceneql.language.scope import Entry
-from sceneql.language.tree import Scalar, Sequence
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import Diagnostics, same_as, suggestion
 from sceneql.quantities.instead import instead
 
 
 def other_family(name: str, mark: Refers, names: Names, catalogue: Catalogue, family_of: Callable[[str], str]) -> str:
     """The help for a part of a wrong family: the model that moves it, a word by that name, or parts of the right."""
+    body = _held_by(names.parts[name].fields) if mark.bodies and family_of(name) == "ties" else None
+    if body is not None:
+        return f"a tie is between bodies, not between their ties: write `{body}`"
     mover = names.mover(name)
     if mover and mark.family == "models":
         return f"'{mover}' moves it: write `{mover}`"
@@ -28,6 +31,13 @@ def other_family(name: str, mark: Refers, names: Names, catalogue: Catalogue, fa
         return f"write `{word}`, a word, or the name of one of {mark.family}"
     others = [part for part in names.parts if family_of(part) == mark.family]
     return f"those of {mark.family} are {', '.join(others[:8])}" if others else f"write one under `{mark.family}:`"
+
+
+def _held_by(fields: Node | None) -> str | None:
+    """The first body that a tie holds, but the world."""
+    between = fields.entries.get("between") if isinstance(fields, Mapping) else None
+    bodies = [item.span.text for item in between.items] if isinstance(between, Sequence) else []
+    return next((one for one in bodies if one != "world"), None)
 
 
 def several_meant(node: Sequence, mark: Refers, entry: Entry, catalogue: Catalogue) -> str | None:
@@ -86,9 +96,13 @@ def part_meant(name: str, mark: Refers, choices: Sequenced[str], names: Names, c
     words = catalogue.words(mark.family)
     if names.gives(name) and (readers := names.readers(name, choices)):
         return f"a part stands here, and none of its outputs: write `{readers[0]}`, which shows it"
+    model = names.part_of(name)[0]
+    shown = [one for one in choices if model != name and _names(names.parts[one].fields, model)]
+    if names.gives(name) and shown:
+        return f"a part stands here, and none of its outputs: write `{shown[0]}`, which shows it"
     if mark.showing and names.gives(name):
-        shown = f"{{map: {{{mark.showing}: {{of: {name}}}}}}}"
-        return f"a part stands here, and none of its outputs: write `{mark.family}: {shown}`, and here `of: map`"
+        map_of = f"{{map: {{{mark.showing}: {{of: {name}}}}}}}"
+        return f"a part stands here, and none of its outputs: write `{mark.family}: {map_of}`, and here `of: map`"
     row = re.findall(r"[^\W\d]\w*", name)
     if mark.panel and len(row) > 1 and all(one in choices for one in row):
         return f"a row is a list: write `[[{', '.join(row)}]]`"
@@ -99,3 +113,8 @@ def part_meant(name: str, mark: Refers, choices: Sequenced[str], names: Names, c
     if hint is None and words:
         hint = f"write the name of one, or a word, `{{{words[0]}: {{...}}}}`; the words are {', '.join(words)}"
     return hint
+
+
+def _names(fields: Node | None, part: str) -> bool:
+    """Whether the text of an entry's fields has the name of a part."""
+    return fields is not None and re.search(rf"\b{re.escape(part)}\b", fields.span.text) is not None

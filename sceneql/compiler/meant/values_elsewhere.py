@@ -14,6 +14,7 @@ from sceneql.compiler import values
 from sceneql.compiler.annotations import quantities
 from sceneql.language.tree import Node, Sequence
 from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.dimension import VELOCITY
 from sceneql.quantities.spaced import two_ends
 
 AXES = 3
@@ -54,7 +55,9 @@ def quantities_fitting(reader: Any, node: Node, fields: Mapping[str, Any]) -> di
 def along_default(node: Node, info: Any) -> str | None:
     """The help for one number where a vector stands whose default is along an axis: as long as it, along that."""
     extra: Any = info.json_schema_extra or {}
-    *numbers, unit = str(extra.get("default", "")).split() or [""]
+    given = [mark.dimension for mark in quantities(info) if mark.shape == (AXES,)]
+    usual = "1 0 0 m/s" if given == [VELOCITY] else ""
+    *numbers, unit = str(extra.get("default") or usual).split() or [""]
     axes = [k for k, number in enumerate(numbers) if number.strip("-0.")]
     text = node.span.text.split()
     if len(numbers) != AXES or len(axes) != 1 or len(text) != 2 or text[1] != unit:

@@ -152,6 +152,10 @@ def must_be_apart(
     assembly: Assembly,
 ) -> None:
     """Raise ScriptError for bodies that start inside one another or inside fixed shapes; it lists all such pairs."""
+    import numpy as np
+
+    from sceneql.contacts.distance.way_out import help_out
+
     found = Diagnostics()
     for (a, b), gap in known.gaps(shapes, places, moving):
         if (a, b) in joined:
@@ -159,7 +163,12 @@ def must_be_apart(
         one, other = refs[a], refs[b]
         if one is not None and other is not None and -gap > DEEP * shapes[a].reach:
             message = f"'{one.name}' starts {-gap:.3g} m inside '{other.name}'"
-            found.error("starts-inside", message, assembly.line(), help="move one of them away")
+
+            def moved(way: Floats, k: int = a, pair: tuple[int, int] = (a, b)) -> float:
+                there = [*places[:k], places[k] + np.append(way, np.zeros(4)), *places[k + 1 :]]
+                return float(dict(known.gaps(shapes, there, moving)).get(pair, 0.0))
+
+            found.error("starts-inside", message, assembly.line(), help=help_out(one.name, moved))
     found.raise_errors()
 
 

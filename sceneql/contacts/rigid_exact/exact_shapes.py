@@ -21,6 +21,7 @@ from sceneql.contacts.distance.convex import Convex
 from sceneql.contacts.distance.core_kernels import REACH
 from sceneql.contacts.distance.led import is_led
 from sceneql.contacts.distance.rigid_contact import DEEP, must_be_apart
+from sceneql.contacts.distance.way_out import help_out
 from sceneql.contacts.rigid_exact.curved import COLUMN, CURVED, FIELD, FORM, SIZES, Curved, axis_of
 from sceneql.contacts.shape_kernels import SURFACE_TYPE
 from sceneql.contacts.shapes import implicit
@@ -202,7 +203,13 @@ def apart_exactly(
         if -gap > DEEP * min(shapes[a].reach, shapes[b].reach):
             who, what = (other, one) if isinstance(other, str) else (one, other)
             message = f"{said(who)} starts {-gap:.3g} m inside {said(what)}"
-            found.error("starts-inside", message, assembly.line(), help="move one of them away")
+
+            def moved(way: Floats, k: int = a, one: int = first, other: int = second) -> float:
+                there = [places[j] + np.append(way, np.zeros(4)) * (j == k) for j in (one, other)]
+                return gap_of(shapes[one], there[0], shapes[other], there[1], assembly.numbers())[0]
+
+            help = help_out(one.name, moved) if isinstance(one, Ref) else "move one of them away"
+            found.error("starts-inside", message, assembly.line(), help=help)
     found.raise_errors()
 
 

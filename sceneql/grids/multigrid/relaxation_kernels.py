@@ -45,22 +45,28 @@ def best_factor(largest, cells):
 
 
 @lean_inlined
-def relax_all(nx, ny, nz, gx, gy, gz, weights, r, d, factor):
-    """One sweep over the cells in their order."""
+def relax_all(nx, ny, nz, gx, gy, gz, parts, r, d, kept):
+    """One sweep over the cells in their order: d = kept d + parts (r + sum of g times neighbors).
+
+    What a cell takes from the one before it, which has just changed, is added last: so that the processor has to wait
+    for a product and a sum alone.
+    """
     plane = nx * ny
     for k in range(nz):
         down, up = ((k - 1) % nz - k) * plane, ((k + 1) % nz - k) * plane
         for j in range(ny):
             row = nx * j + plane * k
             low, high = ((j - 1) % ny - j) * nx, ((j + 1) % ny - j) * nx
+            own, known, part, x_ties = d[row:], r[row:], parts[row:], gx[row:]
+            low_ties, below, high_ties, above = gy[row:], d[row + low :], gy[row + high :], d[row + high :]
+            before = own[nx - 1]
             for i in range(nx):
-                c = row + i
-                left = c - 1 if i > 0 else row + nx - 1
-                right = c + 1 if i < nx - 1 else row
-                total = r[c] + gx[c] * d[left] + gx[right] * d[right] + gy[c] * d[c + low] + gy[c + high] * d[c + high]
+                right = i + 1 if i < nx - 1 else 0
+                total = known[i] + x_ties[right] * own[right] + low_ties[i] * below[i] + high_ties[i] * above[i]
                 if nz > 1:
-                    total += gz[c] * d[c + down] + gz[c + up] * d[c + up]
-                d[c] += factor * (total / weights[c] - d[c])
+                    total += gz[row + i] * d[row + i + down] + gz[row + i + up] * d[row + i + up]
+                before = (kept * own[i] + part[i] * total) + (part[i] * x_ties[i]) * before
+                own[i] = before
 
 
 @lean_inlined
@@ -70,7 +76,7 @@ def relaxation(nx, ny, nz, scale, volume, sink, gx, gy, gz, r, d, weights, q, ov
     largest = diagonal(nx, ny, nz, scale, volume, sink, gx, gy, gz, weights)
     factor = best_factor(largest, max(nx, ny, nz)) if over else 1.0
     for c in range(n):
-        d[c] = 0.0
+        d[c], weights[c] = 0.0, factor / weights[c]
     for iteration in range(0, most + 1, CHECKED):
         multiply(nx, ny, nz, scale, volume, sink, gx, gy, gz, d, q)
         size = 0.0
@@ -84,7 +90,7 @@ def relaxation(nx, ny, nz, scale, volume, sink, gx, gy, gz, r, d, weights, q, ov
         if not size < math.inf:
             break
         for _ in range(CHECKED):
-            relax_all(nx, ny, nz, gx, gy, gz, weights, r, d, factor)
+            relax_all(nx, ny, nz, gx, gy, gz, weights, r, d, 1.0 - factor)
     return -most
 
 

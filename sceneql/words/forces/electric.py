@@ -33,13 +33,13 @@ class Electric(Force):
 
     def problems(self) -> Iterator[Problem]:
         """Several fields or none, and formulas that are no field."""
-        from sceneql.bodies.point_program import problem
+        from sceneql.bodies.point_program import problem, remedy
 
         if sum(given is not None for given in (self.field_, self.formula, self.potential_)) != 1:
             yield Problem("an electric field is said in one way: `field`, `formula` or `potential`")
         for name, formula, count in (("formula", self.formula, 3), ("potential_", self.potential_, 1)):
             if formula is not None and (text := problem(formula, count)) is not None:
-                yield Problem(text, (name,))
+                yield Problem(text, (name,), help=remedy(formula, count))
 
     def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
         """Swings of charges in a field that varies with the place."""

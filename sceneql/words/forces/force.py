@@ -46,14 +46,14 @@ class Force(Family):
 
     def problems(self) -> Iterator[Problem]:
         """Two formulas or none, those that are no force, and a place that is none."""
-        from sceneql.bodies.point_program import problem
+        from sceneql.bodies.point_program import problem, remedy
 
         yield from place_problems(self.at, self.on is not None)
         if (self.components is None) == (self.potential_ is None):
             yield Problem("a force is said in one way: `components` or `potential`")
         for name, formula, count in (("components", self.components, 3), ("potential_", self.potential_, 1)):
             if formula is not None and (text := problem(formula, count)) is not None:
-                yield Problem(text, (name,))
+                yield Problem(text, (name,), help=remedy(formula, count))
 
     def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
         """Swings about the places where masses start, and what acts against their velocities."""

@@ -34,12 +34,12 @@ class Magnetic(Force):
 
     def problems(self) -> Iterator[Problem]:
         """Two fields or none, and a formula that is no field."""
-        from sceneql.bodies.point_program import problem
+        from sceneql.bodies.point_program import problem, remedy
 
         if (self.field_ is None) == (self.formula is None):
             yield Problem("a magnetic field is said in one way: `field` or `formula`")
         if self.formula is not None and (text := problem(self.formula, 3)) is not None:
-            yield Problem(text, ("formula",))
+            yield Problem(text, ("formula",), help=remedy(self.formula, 3))
 
     def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
         """How fast charges run round."""

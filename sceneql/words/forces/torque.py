@@ -26,10 +26,10 @@ class Torque(Force):
 
     def problems(self) -> Iterator[Problem]:
         """Formulas that are no torque."""
-        from sceneql.bodies.point_program import problem
+        from sceneql.bodies.point_program import problem, remedy
 
         if (text := problem(self.components, 3)) is not None:
-            yield Problem(text, ("components",))
+            yield Problem(text, ("components",), help=remedy(self.components, 3))
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add the torque to every body. Raises ScriptError where it is to act on masses that do not turn."""

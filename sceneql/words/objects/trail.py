@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from sceneql.failure import RunFailure
 from sceneql.kinds import Clock, Doubt, FixedTime, Length, Moment, Object, Quantity, Value, field
@@ -14,8 +14,10 @@ from sceneql.shapes.placement import apply, uniform_scale
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
 
-PIECES = 60
-"""Default number of pieces of a trail."""
+PIECES, FINER = 60, 4
+"""Default number of pieces of a trail where it is straight, and of those of a piece where it is not."""
+STRAIGHT = 0.1
+"""Largest distance of a path from a piece, in radii of the trail, with which it counts as straight there."""
 
 PointOrPoints = Annotated[Value, Quantity(dim.LENGTH, None)]
 
@@ -32,7 +34,9 @@ class Trail(Object):
 
     of: PointOrPoints = field("The point, or the points: `sky.moon.position`, `dust.positions`.")
     keep: FixedTime = field("How long it stays.", "1 s", above=0)
-    every: FixedTime | None = field("Time between its corners; by default a sixtieth of `keep`.", None, above=0)
+    every: FixedTime | None = field(
+        "Time between its corners; by default a sixtieth of `keep`, and where it bends a fourth of that.", None, above=0
+    )
     radius: Length = field("Its radius.", "10 mm", above=0)
     fade: bool = field("It thins out towards its old end, its cross-section evenly.", True)
 
@@ -48,7 +52,7 @@ class Trail(Object):
 
     def remembers(self) -> Iterable[tuple[Value, float, float]]:
         """The points."""
-        yield self.of, self.keep, self.keep / PIECES if self.every is None else self.every
+        yield self.of, self.keep, self.keep / (PIECES * FINER) if self.every is None else self.every
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """Its pieces. Raises RunFailure where the number of points is not the same all the time."""
@@ -63,10 +67,42 @@ class Trail(Object):
             message = "the points of a trail must be the same all the time, but some have come or gone"
             raise RunFailure(message, part="of", time=moment.time, span=self.of.span)
         path = apply(place, np.stack(ways))
-        ends = np.stack([path[:-1], path[1:]], axis=2).reshape(-1, 2, 3)
         radius = positive(moment, self.radius, "radius") * uniform_scale(place)
-        ages = (moment.time - 0.5 * (times[:-1] + times[1:])) / self.keep
-        thickness = np.sqrt(np.maximum(1 - ages, 0.0)) if self.fade else np.ones(len(ages))
-        radii = np.repeat(radius * thickness, len(ways[0]))
+        step = self.keep / (PIECES * FINER) if self.every is None else 0.0
+        first, last, which = _pieces(times, path, step, STRAIGHT * radius)
+        ends = np.stack([path[first, which], path[last, which]], axis=1)
+        ages = (moment.time - 0.5 * (times[first] + times[last])) / self.keep
+        radii = radius * (np.sqrt(np.maximum(1 - ages, 0.0)) if self.fade else np.ones(len(ages)))
         if len(ends):
             yield Segments(name, moment.surface(name, self.material, self.color), ends, radii)
+
+
+def _pieces(times: Floats, path: Floats, step: float, near: float) -> tuple[Any, Any, Any]:
+    """Corners, (n,) each, at which the pieces of trails begin and end, and which point each is of.
+
+    ``path`` (instants, points, 3) [m] at ``times`` [s]. With a ``step`` [s] the corners between every FINER-th of them,
+    counted from the start, are left out of paths that are within ``near`` [m] of the piece.
+    """
+    import numpy as np
+
+    count, points = path.shape[:2]
+    even = np.arange(points)
+    if step == 0.0 or count < 3:
+        first = np.repeat(np.arange(count - 1), points)
+        return first, first + 1, np.tile(even, count - 1)
+    fourth = np.rint(times[1:-1] / step).astype(np.int64) % FINER == 0
+    stops = np.concatenate([[0], 1 + np.flatnonzero(fourth), [count - 1]])
+    start, stop = stops[:-1], stops[1:]
+    along = path[stop] - path[start]  # (pieces, points, 3)
+    corner = np.minimum(start[:, None] + np.arange(1, FINER), stop[:, None])
+    away = path[corner] - path[start][:, None]
+    length = np.maximum((along * along).sum(axis=2), np.finfo(float).tiny)
+    part = np.clip((away * along[:, None]).sum(axis=3) / length[:, None], 0.0, 1.0)[..., None]
+    bends = (((away - part * along[:, None]) ** 2).sum(axis=3) > near * near).any(axis=1)
+    piece, which = np.nonzero(~bends)
+    bent, of = np.nonzero(bends)
+    corners = np.column_stack([start, corner, stop])[bent]  # (bent pieces, FINER + 1)
+    longer = corners[:, :-1] < corners[:, 1:]
+    first = np.concatenate([start[piece], corners[:, :-1][longer]])
+    last = np.concatenate([stop[piece], corners[:, 1:][longer]])
+    return first, last, np.concatenate([which, np.repeat(of, longer.sum(axis=1))])
