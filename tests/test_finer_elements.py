@@ -104,3 +104,24 @@ def test_edges_follow_a_hollow_that_is_deep_for_them(tmp_path, spacing):
     round_ = outer.min(axis=1) > 1e-9
     assert np.minimum(abs(away - 1), abs(away - 2))[round_].max() < 1e-9
     assert solid.masses.sum() / 3e3 == pytest.approx(7 / 6 * np.pi, rel=1e-4)
+
+
+def test_elements_of_a_turned_box_lie_along_its_own_axes(tmp_path):
+    """Those of a lattice along the world's were as sharp as 5 degrees."""
+    objects = (
+        "objects: {shape: {box: {size: 0.4 0.2 0.2 m, position: 1 0 0 m, rotation: {about: 1 2 0, angle: 20 deg}, "
+    )
+    objects += "hidden: yes}}}\n"
+    near = "finer: {tip: {near: 0.86 0.07 0.06 m, spacing: 0.05 m}}"
+    whole, fine = (
+        Solid(tmp_path, f"{{of: shape, spacing: 0.1 m, element: p1, {more}{LAW}}}", objects).mesh
+        for more in ("", f"{near}, ")
+    )
+    least, largest = np.degrees(worst_angle(whole.points, whole.cells))
+    assert least == pytest.approx(45)
+    assert largest == pytest.approx(90)
+    assert volumes(whole.points, whole.cells).sum() == pytest.approx(0.016)
+    middles = fine.points[fine.cells].mean(axis=1)
+    close = np.linalg.norm(middles - [0.86, 0.07, 0.06], axis=1) < 0.05
+    assert close.any()
+    assert volumes(fine.points, fine.cells)[close].max() < 0.1**3 / 48

@@ -34,6 +34,9 @@ EDGE = 0.06
 """Part of the width and height at each edge that a camera leaves free of the subject in any case."""
 MOST = 0.75
 """Largest fraction of the picture's width or height that overlays may keep free."""
+MOMENTS, SETS = 240, 6
+"""Number of instants at which overlays are asked whether they are shown; largest number of sets of them, of which one
+after the other is gone for good, that a camera that moves leaves rooms of their own."""
 WAYS = 64
 """Largest number of ways to keep overlays free that are tried."""
 APART = 10.0
@@ -48,6 +51,8 @@ class Arrangement:
 
     overlays: Mapping[str, Overlay]
     room: Room = NO_ROOM
+    rooms: tuple[tuple[float, Room], ...] = ()
+    """Room at each of some instants [s], for a camera that moves, where some of the overlays go for good."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +100,7 @@ def arranged(sight: Sight, tasks: Mapping[str, Task], fixed: Sequence[Box]) -> A
     parts = sight.parts()
     stand = {name: _boxes(sight, task) for name, task in tasks.items()}
     taken = [*fixed, *(box for name, boxes in stand.items() if name not in seekers for box in boxes.values())]
+    owner = {box: name for name, boxes in stand.items() for box in boxes.values()}
     views = list(_views(sight))
     masks = covered(parts, views, sight.size)
     for name in sorted(seekers, key=lambda name: -max(map(_area, stand[name].values()), default=0)):
@@ -104,7 +110,28 @@ def arranged(sight: Sight, tasks: Mapping[str, Task], fixed: Sequence[Box]) -> A
             place = next(place for place, cost in costs.items() if cost <= (least and least + ALIKE))
             overlays[name] = overlays[name].model_copy(update={"place": place})
             taken.append(stand[name][place])
-    return Arrangement(overlays, _room(sight, parts, taken, len(views) > 1) if sight.yields else NO_ROOM)
+    if not sight.yields:
+        return Arrangement(overlays)
+    rooms = {tuple(taken): _room(sight, parts, taken, len(views) > 1)}
+    if len(views) == 1:
+        return Arrangement(overlays, rooms[*taken,])
+    shown = {box: _shown(sight, overlays[owner[box]]) for box in taken if box in owner}
+    there = [tuple(box for box in taken if box not in shown or any(shown[box][k:])) for k in range(MOMENTS + 1)]
+    if 1 < len(set(there)) <= SETS:
+        rooms |= {boxes: _room(sight, parts, boxes, moves=True) for boxes in set(there)}
+        times = (sight.moment.end * k / MOMENTS for k in range(MOMENTS + 1))
+        steps = tuple((time, rooms[boxes]) for time, boxes in zip(times, there, strict=True))
+        return Arrangement(overlays, rooms[*taken,], steps)
+    return Arrangement(overlays, rooms[*taken,])
+
+
+def _shown(sight: Sight, overlay: Overlay) -> list[bool]:
+    """Whether an overlay is shown at MOMENTS + 1 even instants of the film; of one that reads the run, always."""
+    show, end = overlay.show, sight.moment.end
+    if show is None or show.links:
+        return [True] * (MOMENTS + 1)
+    then = (replace(sight.moment, now=end * k / MOMENTS, _values={}) for k in range(MOMENTS + 1))
+    return [bool(moment.at(show)) for moment in then]
 
 
 def _boxes(sight: Sight, task: Task) -> dict[str, Box]:

@@ -181,16 +181,18 @@ def filled(
     assembly: Assembly,
     turn: float | None = None,
 ) -> ElementMesh:
-    """The mesh of an object. Raises ScriptError where it cannot be filled, LimitRefused for too many elements.
+    """The mesh of an object, whose lattice lies along its axes.
+
+    Raises ScriptError where it cannot be filled, LimitRefused for too many elements.
 
     ``turn``: largest angle [rad] by which the object's concave surfaces turn along an edge; None for any. Meshes of
     implicit objects without ``finer`` are cached, since variants, studies and twins fill the same object repeatedly.
     """
-    inside, spacing = Inside(ref, assembly), spacing_of(ref, spacing, element, assembly)
+    inside, spacing = Inside(ref, assembly, own_axes=True), spacing_of(ref, spacing, element, assembly)
     key = None
     if inside.field is not None and not finer:
         parts = (inside.field.code, inside.field.constants, inside.field.parts, inside.low, inside.high)
-        key = (element, spacing, turn, *(part.tobytes() for part in parts))
+        key = (element, spacing, turn, *(part.tobytes() for part in (*parts, inside.in_world(np.eye(3)))))
     if key is None or (mesh := _kept.pop(key, None)) is None:
         with doing(f"filling {ref.name}"):
             mesh = _filled(inside, spacing, element, finer, assembly.line(), turn)
@@ -206,7 +208,7 @@ def spacing_of(ref: Ref, spacing: float | None, element: type[Element], assembly
     """Side [m] of the lattice's cubes in an object: the given one, or the default one of its box."""
     if spacing is not None:
         return spacing
-    box = Inside(ref, assembly)
+    box = Inside(ref, assembly, own_axes=True)
     return default_spacing(box.low, box.high, element)
 
 
@@ -230,6 +232,9 @@ def _filled(
         inside.bounded(bounded, A_PLACE * float(np.count_nonzero(held)), "elements", BYTES[element.nodes()])
         return held
 
+    if inside.axes is not None:
+        axes = inside.axes
+        finer = {name: one.model_copy(update={"near": tuple(axes.T @ one.near)}) for name, one in finer.items()}
     made = stuffed(inside.low, inside.high, spacing, holds, inside.crossing)
     points, tetrahedra = made.points, made.tetrahedra
     if not len(tetrahedra):
@@ -254,9 +259,10 @@ def _filled(
         return onto_crease(places, normals, sides, spacing, inside.holds, inside.crossing)
 
     try:
-        return _fitted(element, points, tetrahedra, finer, Onto(onto, onto_edge), line, spacing, turn)
+        mesh = _fitted(element, points, tetrahedra, finer, Onto(onto, onto_edge), line, spacing, turn)
     except Exceeds as error:
         raise LimitRefused(str(error), inside.span, TOO_FINE) from None
+    return replace(mesh, points=inside.in_world(mesh.points))
 
 
 def _whole(inside: Inside, spacing: float, points: Floats) -> None:
@@ -274,5 +280,5 @@ def _whole(inside: Inside, spacing: float, points: Floats) -> None:
     away, _ = cKDTree(points).query(places)
     k = int(np.argmax(away))
     if away[k] > THIN * spacing:
-        where = ", ".join(f"{c:.3g}" for c in places[k])
+        where = ", ".join(f"{c:.3g}" for c in inside.in_world(places)[k])
         raise inside.refusal(f"at ({where}) m it is thinner than the spacing of {spacing:.3g} m; make that smaller")

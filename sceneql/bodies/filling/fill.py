@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 CHUNK = 1 << 18
 EMPTIEST = 2000
 """An object that contains fewer than 1/EMPTIEST of its box's random points counts as empty."""
+ALONG = 1e-9
+"""Largest entry of a rotation, less 0 or 1, up to which axes lie along the world's."""
 
 
 class Fill(Record):
@@ -57,7 +59,7 @@ class Fill(Record):
 class Inside:
     """An object at the start of the run: its bounding box, and tests for points inside."""
 
-    def __init__(self, ref: Ref, assembly: Assembly) -> None:
+    def __init__(self, ref: Ref, assembly: Assembly, own_axes: bool = False) -> None:
         """Raises ScriptError for an object without an inside or without an end."""
         import numpy as np
 
@@ -66,14 +68,31 @@ class Inside:
         self.span = ref.span
         self.name = ref.name
         place = np.eye(3, 4)
+        self.axes: Floats | None = None
+        """(3, 3) with `own_axes` the object's axes, as columns, where they are not the world's: box, places and tests
+        are then in these axes."""
         try:
+            if own_axes and (axes := _axes(kind, start)) is not None:
+                self.axes, place = axes, np.column_stack([axes.T, np.zeros(3)])
             low, high = kind.extent(place, start)
             self.low, self.high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
             if not (np.isfinite(self.low).all() and np.isfinite(self.high).all()):
                 raise TypeError("it has no end")
-            self.holds, self.crossing, self.field = _test(kind, start)
+            self._holds, self._crossing, self.field = _test(kind, start)
         except (TypeError, ValueError) as error:
             raise self.refusal(str(error)) from None
+
+    def holds(self, places: Floats) -> Any:
+        """Whether places (n, 3) [m] lie inside, (n,) bool."""
+        return self._holds(self.in_world(places))
+
+    def crossing(self, inner: Floats, outer: Floats) -> Floats:
+        """The shares (n,) of segments between places (n, 3) [m] at which these leave the object."""
+        return self._crossing(self.in_world(inner), self.in_world(outer))
+
+    def in_world(self, places: Floats) -> Floats:
+        """Places (n, 3) [m] in the world."""
+        return places if self.axes is None else places @ self.axes.T
 
     def refusal(self, why: str) -> ScriptError:
         """The error that says why the object cannot be filled."""
@@ -110,6 +129,19 @@ def chance_key(name: str, seed: int) -> int:
     import zlib
 
     return zlib.crc32(f"{seed}:{name}".encode())
+
+
+def _axes(kind: Object, start: Any) -> Floats | None:
+    """The axes (3, 3) of an object that is turned at the start, as columns; None where they lie along the world's."""
+    import numpy as np
+
+    from sceneql.shapes.placement import Placed, rotation_matrix
+
+    if not isinstance(kind, Placed):
+        return None
+    axes = rotation_matrix(start.at(kind.rotation))
+    along = np.minimum(abs(axes), abs(abs(axes) - 1.0)).max() < ALONG
+    return None if along else axes
 
 
 def _test(kind: Object, start: Any) -> tuple[Callable[[Floats], Any], Callable[[Floats, Floats], Floats], Tape | None]:
