@@ -70,13 +70,12 @@ def check(script: Script, catalogue: Catalogue, found: Diagnostics, parsed: Pars
     """
     checker = _Checker(script, catalogue, found, parsed or Parsed())
     improve_entries(script, catalogue, found)
-    for family, entries in script.sections.items():
-        for name in entries:
+    for name, family in [*checker.family_of.items()]:
+        if name in script.sections.get(family, ()):
             checker.task(family, name)
     made = dict(checker.tasks)
-    for family, entries in script.unmade.items():
-        for name in entries:
-            checker.task(family, name)
+    for name, family in [*checker.family_of.items()]:  # of templates without an instance, and with a name used twice
+        checker.task(family, name)
     checker.tasks = made
     checker.gives()
     checker.defaults()
@@ -109,8 +108,8 @@ class _Checker:
         self.folder = Path(script.sources[0].name).parent
         for family, entries in (*script.sections.items(), *script.unmade.items()):
             for name, entry in entries.items():
-                self.family_of.setdefault(name, family)  # a name used twice is reported by the language
-                self.entries.setdefault(name, entry)
+                own = name if name not in self.entries else f"{name} of {family}"  # reported by the language
+                self.family_of[own], self.entries[own] = family, entry
         templates = script.root.entries.get("templates")
         self.templates = templates.entries if isinstance(templates, MappingNode) else {}
         define = script.settings.get("define")

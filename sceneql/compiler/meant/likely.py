@@ -130,7 +130,7 @@ def meant(reader: Any, cls: type[BaseModel], node: MappingNode) -> set[str | Non
     for name in unknown:
         told = together(name, unknown, node, known) or ""
         found |= {meant_field(name, known), taking_word(reader, cls, name)}
-        found |= {one for one in known if f"`{one}: " in told}
+        found |= {one for one in known if f"`{one}: " in told or f", {one}: " in told}
         if issubclass(cls, kinds.Record) and cls.meant_by(node.entries[name].span.text) is not None:
             found.add(known[0])
     return found
