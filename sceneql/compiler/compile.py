@@ -38,7 +38,7 @@ from sceneql.compiler.passes.unmoved import report_moving
 from sceneql.compiler.passes.unseen import warn_of_buried, warn_of_dim, warn_of_unseen
 from sceneql.compiler.passes.unshown import warn_of_unshown, warn_of_unused_cameras
 from sceneql.compiler.passes.unused import warn_of_unused_defines
-from sceneql.compiler.passes.upward import warn_of_z_high, warn_of_z_up
+from sceneql.compiler.passes.upward import warn_of_rising, warn_of_z_high, warn_of_z_up
 from sceneql.compiler.studies import check_studies
 from sceneql.compiler.values_below import values_of
 from sceneql.doing import duration
@@ -111,6 +111,7 @@ def compile_script(
     warn_of_left_behind(tasks, found)
     warn_of_z_up(tasks, found)
     warn_of_z_high(tasks, found)
+    warn_of_rising(tasks, found)
     warn_of_unseen(tasks, drawn, cameras, found)
     warn_of_buried(tasks, found)
     warn_of_dim(checked.tasks, found)

@@ -17,6 +17,7 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler.annotations import marks_of, quantities
 from sceneql.compiler.meant import quantity_help as helped
+from sceneql.compiler.meant.by_size import by_own_size
 from sceneql.compiler.meant.values_elsewhere import along_default, elsewhere, first_of, middle_of_ends
 from sceneql.compiler.names import Names
 from sceneql.compiler.problems import Unreadable
@@ -70,6 +71,7 @@ def better_alone(
     node, found = written[name], reader.found.found
     info = field_of(cls, name)
     helped.by_own_density(reader, written, before)
+    by_own_size(reader, written, cls, name, before)
     told = [(one.code, one.help) for one in found[before:]]
     if len(told) != 1:
         return
@@ -189,7 +191,7 @@ def _candidates(text: str, errors: list[Diagnostic], name: str) -> Iterator[str]
         either = one.code == "unit-needed" or ", in degrees" in (one.help or "")
         if meant is None or one.span is None or (shown and shown != [meant[1]] and not either):
             return
-        told.append((one.span.start, one.span.end, meant[1]))
+        told.append((*_shown_from(text, one.span.start, one.span.end, meant[1]), meant[1]))
     of_field = [meant.removeprefix(f"{name}: ") for _, _, meant in told if meant.startswith(f"{name}: ")]
     if not of_field:
         yield _replaced(text, told)
@@ -197,6 +199,14 @@ def _candidates(text: str, errors: list[Diagnostic], name: str) -> Iterator[str]
             node = compose_node(Source("value", text))
             yield _replaced(text, [(*_around(node, start, end), meant) for start, end, meant in told])
     yield (of_field or [meant for _, _, meant in told])[0]
+
+
+def _shown_from(text: str, start: int, end: int, meant: str) -> tuple[int, int]:
+    """Start and end of what a help shows anew: with a call that stands around the wrong piece, as ``cos(time)``."""
+    call = re.search(r"\w+\($", text[:start])
+    if call is not None and meant.startswith(call[0]) and meant.endswith(")") and text[end : end + 1] == ")":
+        return call.start(), end + 1
+    return start, end
 
 
 def _replaced(text: str, told: Collection[tuple[int, int, str]]) -> str:
