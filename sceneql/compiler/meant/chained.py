@@ -23,6 +23,7 @@ from sceneql.compiler.problems import Unreadable
 from sceneql.language.compose import compose_node
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, same_as
+from sceneql.quantities.literal import vector_meant
 from sceneql.quantities.span import Source
 from sceneql.quantities.units import format_quantity
 
@@ -42,6 +43,8 @@ AXES = {
     for axis in "xyz"
 }
 """Directions by the names of axes."""
+THREE = 3
+"""Rows of a matrix in space."""
 PLANAR = "is a vector of 3, not a vector of 2"
 """What is told of a vector without one of its components."""
 SINGLE = " is a single value, not a vector"
@@ -105,6 +108,8 @@ def better_alone(
     if better is None and shaped:
         better = helped.other_output(reader, node, info, name)
     better = better or helped.for_each(reader, node, cls, name, title)
+    if better is None and (diagonal := _diagonal(node)) is not None:
+        better = f"it has the three on the diagonal: write `{name}: {diagonal}`"
     if better is None and found[before].message.endswith(PLANAR):
         better = "a number is missing: it has one for each of x, y and z"
     if better is None and found[before].message.startswith(f"{name}{SINGLE}"):
@@ -123,6 +128,15 @@ def _one_for_all(node: Node, info: Any, name: str, title: str) -> str | None:
         return None
     more = f"; `sceneql words {title}` tells what goes by place" if title.isidentifier() else ""
     return f"it is one value, the same at all places, as `{name}: {format_quantity(1.0, marks[0].dimension)}`{more}"
+
+
+def _diagonal(node: Node) -> str | None:
+    """The numbers on the diagonal of a matrix of three rows; None of other values."""
+    rows = node.items if isinstance(node, Sequence) else []
+    cells = [row.items for row in rows if isinstance(row, Sequence)]
+    if len(rows) != THREE or [len(row) for row in cells] != [THREE] * THREE:
+        return None
+    return vector_meant(", ".join(row[k].span.text for k, row in enumerate(cells)))
 
 
 def _swept(reader: Any, written: Naming[str, Node], what: str) -> str | None:
