@@ -353,6 +353,12 @@ OF_SECTIONS = (
         "joints hinges constraints constraint",
         "write `ties: {name: {hinge: {between: [model.a, model.b], at: 0 0 0 m}}}`: `sceneql words hinge`",
     ),
+    (
+        "section",
+        "keyframes keyframe keys animation animations animate tween fcurves actions",
+        "a value that changes has its keys where it stands, `position: {keys: {0 s: 0 0 0 m, 1 s: 0 1 0 m}}`:"
+        " `sceneql words keys`",
+    ),
     ("section", "gravity", "write `forces: [gravity]`, or `forces: [{gravity: {strength: 9.81 m/s^2}}]`"),
     ("section", "collision contact", "write `forces: [gravity, collision]`"),
     ("section", "duration end length stop time", "write `clock: {end: 5 s}`: `sceneql words clock`"),

@@ -349,11 +349,6 @@ OF_PARTS = (
     ("field.forces", "mass", "write its `strength`, G times the mass: `6.67e-11*1e10 m^3/s^2`"),
     ("objects", "indexedfaceset faces triangles polygons vertices", "a file has them: `{mesh: {file: cow.obj}}`"),
     ("objects", "text title label caption", "text stands in `overlays: {title: {caption: {text: ...}}}`"),
-    (
-        "models",
-        "pendulum double_pendulum",
-        "its equation is a model, `sceneql words equations`; or a body hangs on a tie, `sceneql words hinge`",
-    ),
     ("named", "gravity", "write `gravity: {gravity: {strength: 9.81 m/s^2}}`, or only `forces: [gravity]`"),
     (
         "list",

@@ -86,7 +86,7 @@ _LISTS = (
     ("points", "outer corners vertices verts"),
     ("color", "colour rgb rgba fill tint albedo diffuse base_color basecolor pigment paint"),
     ("material", "shader surface finish appearance"),
-    ("cells", "resolution segments subdivisions divisions grid nodes points"),
+    ("cells", "resolution segments subdivisions divisions grid nodes points count number"),
     ("cell", "resolution grid grid_size dx spacing"),
     ("size", "depth dimensions dims dimension extent extents resolution res width height length sides"),
     ("radius", "pscale r rad size major major_radius"),
@@ -103,6 +103,7 @@ _LISTS = (
     ("softening", "eps epsilon soften"),
     ("constant", "g gravitational_constant"),
     ("within", "source emitter nozzle"),
+    ("object", "within in inside volume region box"),
     ("because", "source reason why comment note"),
     ("value", "temperature temp concentration impulse momentum equals equal is expected target eq"),
     ("below", "less_than at_most"),
@@ -250,7 +251,8 @@ _LISTS = (
     ("expect", "tests checks asserts"),
     ("studies", "experiments sweeps"),
     ("include", "import imports includes"),
-    ("background", "backdrop"),
+    ("background", "backdrop bg background_color backgroundcolor clear_color"),
+    ("about", "title description summary"),
 )  # fmt: skip
 
 
