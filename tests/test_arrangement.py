@@ -138,6 +138,15 @@ def test_what_a_camera_follows_stays_clear_of_overlays(tmp_path):
     assert np.diff(distances).max() < 1e-12  # but for rounding, at rest
 
 
+def test_a_camera_that_moves_leaves_overlays_the_room_with_which_the_film_is_largest(tmp_path):
+    """At the start of a throw room at the left is as good as below; the way is wide."""
+    text = FALL.format(overlays="{speed: {graph: {y: length(fall.velocity)}}}", size="640 360")
+    text = text.replace("window: 0 s", "").replace("mass: 1 kg", "mass: 1 kg, velocity: 6 6 0 m/s")
+    _, _, found, _ = arranged(tmp_path, text)
+    assert found.room[0] == 0.0
+    assert found.room[3] > 0.2
+
+
 def test_a_title_that_has_gone_takes_no_room_from_a_camera_that_moves(tmp_path):
     text = FALL.format(overlays=TITLES, size="640 360").replace("window: 0 s", "")
     (tmp_path / "scene.yaml").write_text(text)

@@ -254,7 +254,7 @@ def _room(seen: Sight, parts: Sequence[tuple[Floats, Floats]], taken: Sequence[B
         ways = list(_ways(kept, seen.size))
         if not ways:
             return room
-        room = max(ways, key=lambda way: (round(_largeness(seen, parts, way)), -sum(way)))
+        room = max(ways, key=lambda way: (round(_largeness(seen, parts, way, moves)), -sum(way)))
 
 
 def _within(box: Box, room: Room, size: tuple[int, int]) -> bool:
@@ -286,11 +286,17 @@ def _ways(kept: Sequence[Box], size: tuple[int, int]) -> Iterator[Room]:
             yield left, top, right, bottom
 
 
-def _largeness(seen: Sight, parts: Sequence[tuple[Floats, Floats]], room: Room) -> float:
-    """Diagonal [pixels] of the subject in the picture with a room."""
+def _largeness(seen: Sight, parts: Sequence[tuple[Floats, Floats]], room: Room, moves: bool) -> float:
+    """Diagonal [pixels] of the subject in the picture with a room; the mean over the film if the camera ``moves``."""
     import numpy as np
 
-    view = seen.look(replace(seen.moment, room=room))
     points = [corner for low, high in parts for corner in corners(low, high)]
-    places = np.array([place for point in points if (place := projected(point, view)) is not None])
-    return float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0
+    moments, found = [replace(seen.moment, room=room)], []
+    if moves:
+        film = (seen.moment.end * k / INSTANTS for k in range(INSTANTS + 1))
+        moments = [replace(moments[0], now=time, _states={}, _values={}) for time in film]
+    for moment in moments:
+        view = seen.look(moment)
+        places = np.array([place for point in points if (place := projected(point, view)) is not None])
+        found.append(float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0)
+    return float(np.mean(found))
