@@ -85,12 +85,12 @@ def read_entry(what: str, node: Node, found: Diagnostics, sections: Collection[s
         if typed is not None:
             word = node.entries[typed].span.text
             own = next((node.entries[key].span.text for key in words if key in NAMES), "")
-            fields = [key for key in words if key != typed and key not in NAMES]
-            inner = ", ".join(f"{key}: {node.entries[key].span.text}" for key in fields)
+            more = [key for key in words if key != typed and key not in NAMES]
+            inner = ", ".join(f"{key}: {node.entries[key].span.text}" for key in more)
             inner = f"{{{word}: {{{inner if len(inner) <= SHOWN else '...'}}}}}"
             help = f"the word stands around its fields: write `{inner}`"
             if own.isidentifier():
-                help = f"its name stands before its word, without a dash: write `{own}: {inner if fields else word}`"
+                help = f"its name stands before its word, without a dash: write `{own}: {inner if more else word}`"
         elif main not in ("", "group") and "scale" in words:
             help = f"a group scales what is in it: write `{name}: {in_group(main, _fields_of(main, words, node))}`"
         elif (other := instead("entry", words[0]) or next(filter(None, beside), None)) is not None:

@@ -284,7 +284,7 @@ def _errors(reader: Any, text: str, cls: type[BaseModel], name: str) -> list[Dia
             trial.field(node, field_of(cls, name), name)
     except Unreadable:
         better_alone(trial, {name: node}, cls, name, "", 0)
-        return [*nothing.errors] or [Diagnostic("unread", "", None)]
+        return [*nothing.errors] or [Diagnostic("syntax", "", None)]
     except ScriptError as error:
         return [*error.diagnostics]
     return [*nothing.errors]

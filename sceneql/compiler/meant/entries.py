@@ -51,8 +51,9 @@ def improve_entries(script: Script, catalogue: Catalogue, found: Diagnostics) ->
 def _indented(script: Script, family: str, name: str, catalogue: Catalogue) -> str | None:
     """The help for an empty entry, and for the one behind it, called like a word, that belongs to it."""
     section = script.root.entries.get(family)
-    for first, second in pairwise(section.entries) if isinstance(section, Mapping) else ():
-        if name in (first, second) and empty(section.entries[first]) and catalogue.load(family, second) is not None:
+    entries = section.entries if isinstance(section, Mapping) else {}
+    for first, second in pairwise(entries):
+        if name in (first, second) and empty(entries[first]) and catalogue.load(family, second) is not None:
             return f"what belongs to `{first}` is indented below it: write two spaces more before `{second}:`"
     return None
 
