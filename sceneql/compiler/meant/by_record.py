@@ -111,9 +111,19 @@ def _inside_one(cls: type[BaseModel], name: str, node: Mapping) -> str | None:
             one: ours for one, ours in meant.items() if ours is not None and "\n" not in node.entries[one].span.text
         }
         if name in found and len(found) >= SEVERAL and needed and needed <= {*found.values()}:
-            text = ", ".join(f"{ours}: {node.entries[one].span.text}" for one, ours in found.items())
+            text = ", ".join(f"{ours}: {_hidden(records[0], ours, node.entries[one])}" for one, ours in found.items())
             return f"write `{field}: {{{text}}}`"
     return None
+
+
+def _hidden(record: type[BaseModel], field: str, value: Node) -> str:
+    """The text of a value; an object made in place is hidden where the field's line of the manual says so."""
+    info = next(info for key, info in record.model_fields.items() if kinds.written_name(key) == field)
+    text = value.span.text
+    usual = "a hidden one" in (info.description or "") and isinstance(value, Mapping) and text.endswith("}}")
+    if not usual or "hidden" in text:
+        return text
+    return f"{text[:-2]}{'' if text[:-2].endswith('{') else ', '}hidden: yes}}}}"
 
 
 def _of_one(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:
