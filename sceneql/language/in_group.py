@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping as Table
 from typing import Final
 
+from sceneql.language.one_line import one_line
 from sceneql.language.tree import Node
 
 PLACING: Final = ("position", "rotation", "scale")
@@ -15,8 +16,8 @@ SHOWN: Final = 600
 
 def in_group(word: str, fields: Table[str, Node]) -> str:
     """``{group: {children: [{sphere: {radius: 1 m}}], scale: 1 2 1}}`` for a word with fields, a scale among them."""
-    own = ", ".join(f"{name}: {node.span.text}" for name, node in fields.items() if name not in PLACING)
-    placed = {name: fields[name].span.text for name in PLACING if name in fields}
+    own = ", ".join(f"{name}: {one_line(node)}" for name, node in fields.items() if name not in PLACING)
+    placed = {name: one_line(fields[name]) for name in PLACING if name in fields}
     whole = _group(f"{word}: {{{own}}}", placed)
     if len(whole) > SHOWN or "\n" in whole:
         whole = _group(f"{word}: {{...}}", dict.fromkeys(placed, "..."))

@@ -17,6 +17,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.names import Names
 from sceneql.kinds import Kind
 from sceneql.language.in_group import in_group
+from sceneql.language.one_line import one_line
 from sceneql.language.scope import Entry
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import STRONG, nearest, same_as
@@ -87,9 +88,9 @@ def _by_names(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> st
     for field, record in _tables(cls):
         inner = {kinds.written_name(key) for key in record.model_fields}
         held = [one.entries.keys() for one in table.entries.values() if isinstance(one, Mapping) and one.entries]
-        text = table.span.text
+        text = one_line(table)
         if field not in node.entries and len(held) == len(table.entries) and all(keys <= inner for keys in held):
-            text = text if "\n" not in text and len(text) <= SHOWN else f"{{{next(iter(table.entries))}: {{...}}, ...}}"
+            text = text if len(text) <= SHOWN else f"{{{next(iter(table.entries))}: {{...}}, ...}}"
             of_one = f"{reader.owner}.{next(iter(table.entries))}"
             return f"write `{field}: {text}`; one of them is then `{of_one}.position`"
     return None

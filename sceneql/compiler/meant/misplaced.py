@@ -17,6 +17,7 @@ from sceneql.compiler.meant.together import together
 from sceneql.compiler.meant.unknown import DEFAULT, having_fields
 from sceneql.compiler.meant.values_elsewhere import quantities_fitting
 from sceneql.kinds import Settings, written_name
+from sceneql.language.one_line import one_line
 from sceneql.language.script import Script
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import STRONG, Diagnostics, nearest, same_as
@@ -79,7 +80,7 @@ class _Section:
         told = [(_field(cls, name, exact=False), node) for name, node in fields.items()]
         if not all(field is not None and self._takes(cls, field, node) for field, node in told):
             return ""
-        return ", ".join(f"{field}: {node.span.text}" for field, node in told)
+        return ", ".join(f"{field}: {one_line(node)}" for field, node in told)
 
     def _named(self, cls: type[BaseModel]) -> str:
         """Its fields under the names that a record has for them, where it has all of them; else empty."""
@@ -87,7 +88,7 @@ class _Section:
         ours = [written_name(name) for name in cls.model_fields]
         told = [(nearest(name, ours, STRONG), node) for name, node in fields.items()]
         known = all(field is not None for field, _ in told)
-        return ", ".join(f"{field}: {node.span.text}" for field, node in told) if known else ""
+        return ", ".join(f"{field}: {one_line(node)}" for field, node in told) if known else ""
 
     def _in_setting(self, exact: bool) -> Iterator[str]:
         """It as a field of the clock: ``fps: 24``."""
@@ -96,12 +97,12 @@ class _Section:
         given = self.script.root.entries.get(SETTING)
         own = given.entries if isinstance(given, Mapping) else {}
         if field is not None and field not in own and self._takes(cls, field, self.value):
-            fields = [f"{name}: {one.span.text}" for name, one in own.items()]
-            yield f"{SETTING}: {{{', '.join([*fields, f'{field}: {self.value.span.text}'])}}}"
+            fields = [f"{name}: {one_line(one)}" for name, one in own.items()]
+            yield f"{SETTING}: {{{', '.join([*fields, f'{field}: {one_line(self.value)}'])}}}"
 
     def _word(self, exact: bool) -> Iterator[str]:
         """It as a word of a family, with its fields, or with a value of one of them: ``gravity: 1.62 m/s^2``."""
-        value, text = self.value, self.value.span.text
+        value, text = self.value, one_line(self.value)
         words = [(family, self.key) for family in self.catalogue.families_of(self.key)]
         if not exact:
             others = [] if self.own else [(one, same_as(self.key, self.catalogue.words(one))) for one in ORDER]
@@ -136,14 +137,14 @@ class _Section:
         if not isinstance(value, Mapping) or not value.entries:
             return
         if len(value.entries) == 1 and self.catalogue.load(family, next(iter(value.entries))) is not None:
-            yield self._part(family, name, value.span.text)
+            yield self._part(family, name, one_line(value))
         elif all(self._has_word(family, one) for one in value.entries.values()):
-            yield f"{family}: {value.span.text}"
+            yield f"{family}: {one_line(value)}"
         elif words := having_fields(list(value.entries), family, self.catalogue):
             word = USUAL[family] if USUAL.get(family) in words else words[0]
-            yield self._part(family, name, f"{{{word}: {value.span.text}}}")
+            yield self._part(family, name, f"{{{word}: {one_line(value)}}}")
         elif (word := nearest(next(iter(value.entries)), choices, STRONG)) is not None and len(value.entries) == 1:
-            yield self._part(family, name, f"{{{word}: {next(iter(value.entries.values())).span.text}}}")
+            yield self._part(family, name, f"{{{word}: {one_line(next(iter(value.entries.values())))}}}")
         elif (cls := self.catalogue.load(family, USUAL.get(family, ""))) is not None and (told := self._named(cls)):
             yield self._part(family, name, f"{{{USUAL[family]}: {{{told}}}}}")
 
@@ -156,7 +157,7 @@ class _Section:
 
     def _in_word(self, exact: bool) -> Iterator[str]:
         """It as a field of a part of the script, or of a word: ``layout: [{each: variant}]`` of a video."""
-        text = self.value.span.text
+        text = one_line(self.value)
         for family in ORDER if exact or not self.own else ORDER[:PLAIN]:
             for name, entry in self.script.sections.get(family, {}).items():
                 cls = self.catalogue.load(family, entry.word)
@@ -164,7 +165,7 @@ class _Section:
                 given = entry.fields.entries if isinstance(entry.fields, Mapping) else {}
                 if cls is not None and field is not None and field not in given and self._takes(cls, field, self.value):
                     inner = ", ".join(
-                        [*(f"{one}: {node.span.text}" for one, node in given.items()), f"{field}: {text}"]
+                        [*(f"{one}: {one_line(node)}" for one, node in given.items()), f"{field}: {text}"]
                     )
                     yield f"{family}: {{{name}: {{{entry.word}: {{{inner}}}}}}}"
             usual = [USUAL[family]] if family in USUAL else []
@@ -183,7 +184,7 @@ class _Section:
     def _part(self, family: str, name: str, part: str) -> str:
         """A part in its section, behind those that stand there in a line; a list where the section is one."""
         given = self.script.root.entries.get(family)
-        text = "" if given is None else given.span.text
+        text = "" if given is None else one_line(given)
         inner = text[1:-1] + ", " if text[1:-1].strip() and "\n" not in text and len(text) <= SHOWN else ""
         listed = text.startswith("[") or (family == "forces" and not text) or not name
         return f"{family}: [{inner}{part}]" if listed else f"{family}: {{{inner}{name}: {part}}}"
@@ -198,7 +199,7 @@ def improve_sections(script: Script, catalogue: Catalogue, reader: Any, found: D
         if one.code != "unknown-section" or key is None or (one.help or "").startswith("what belongs"):
             continue
         value = script.root.entries[key]
-        text = value.span.text
+        text = one_line(value)
         guessed = (one.help or "").startswith("did you mean")
         near = guessed and f"{key}s" not in known and nearest(key, known, STRONG) is not None
         if near or not text or "\n" in text or len(text) > SHOWN:
