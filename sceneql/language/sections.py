@@ -21,6 +21,8 @@ NOTHING: Final = ("none", "no", "false", "off")
 """Words of what is not to be there."""
 TYPES: Final = ("type", "kind", "shape", "geometry", "primitive")
 """Keys by which other programs tell the word of a part."""
+NAMES: Final = ("name", "id")
+"""Keys by which other programs name a part."""
 SHOWN: Final = 80
 """Longest text of fields that a message repeats."""
 _ENTRY = "an entry is `name: word` or `name: {word: {fields}}`"
@@ -82,10 +84,13 @@ def read_entry(what: str, node: Node, found: Diagnostics, sections: Collection[s
         typed = next((key for key in TYPES if key in words and isinstance(node.entries[key], Scalar)), None)
         if typed is not None:
             word = node.entries[typed].span.text
-            inner = ", ".join(f"{key}: {node.entries[key].span.text}" for key in words if key != typed)
-            help = (
-                f"the word stands around its fields: write `{{{word}: {{{inner if len(inner) <= SHOWN else '...'}}}}}`"
-            )
+            own = next((node.entries[key].span.text for key in words if key in NAMES), "")
+            more = [key for key in words if key != typed and key not in NAMES]
+            inner = ", ".join(f"{key}: {node.entries[key].span.text}" for key in more)
+            inner = f"{{{word}: {{{inner if len(inner) <= SHOWN else '...'}}}}}"
+            help = f"the word stands around its fields: write `{inner}`"
+            if own.isidentifier():
+                help = f"its name stands before its word, without a dash: write `{own}: {inner if more else word}`"
         elif main not in ("", "group") and "scale" in words:
             help = f"a group scales what is in it: write `{name}: {in_group(main, _fields_of(main, words, node))}`"
         elif (other := instead("entry", words[0]) or next(filter(None, beside), None)) is not None:

@@ -150,6 +150,7 @@ OF_FORMULAS = (
     ("unit name", "cc ccm", "a cc is a cubic centimeter: write `g/cm^3`"),
     ("unit name", "cp cps centipoise poise", "a poise is `0.1 Pa*s`, a hundredth of it `1e-3 Pa*s`"),
     ("name", "G", "write `6.6743e-11 m^3/(kg*s^2)`, or define it so: `define: {G: 6.6743e-11 m^3/(kg*s^2)}`"),
+    ("sign", "~", "leave the field out"),
     ("sign", "'", "a foot is `ft`, an inch `inch`: `2 3 1 ft`"),
     ("sign", '"', "an inch is `inch`, a foot `ft`: `4 2 1 inch`"),
     (

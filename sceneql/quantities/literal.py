@@ -68,6 +68,7 @@ def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[U
             raise ScriptError([replace(found, help=f"write `{number.group()}*{word.group()}` for a product")]) from None
         near = re.fullmatch(r"did you mean '(\w+)'\?", found.help or "")
         sure = near is not None and near[1] in UNITS and len(word.group()) > 1 and word.group() not in CONSTANTS
+        sure = sure or re.fullmatch(r"write `[^`]*`", found.help or "") is not None
         both = hint if found.help is None else f"{found.help}; {hint}"
         raise ScriptError([found if sure else replace(found, help=both)]) from None
 

@@ -153,7 +153,7 @@ def inside(
             before = f"{own[0]}: {value.span.text}, " if isinstance(value, Scalar) and len(own) == 1 else "..., "
             return f"it stands inside `{key}`: write `{key}: {{{before}{name}: {text}}}`"
     if written is not None:
-        return None
+        return _of_contact(reader, cls, name, text)
     plain = node.text if isinstance(node, Scalar) else ""
     if issubclass(cls, kinds.Record) and (told := cls.meant_by(plain)) is not None:
         return told
@@ -190,6 +190,19 @@ def _for_each(reader: Any, name: str) -> str | None:
     word = (used or [one for one in words if one == USUAL_FORCE] or words)[0]
     told = f"{{{word}: {{{name}: [{', '.join(each)}]}}}}"
     return f"it is a force's, one for each in their order: write `forces: {{all: {told}}}`"
+
+
+def _of_contact(reader: Any, cls: type[BaseModel], name: str, text: str) -> str | None:
+    """The help for a field of a contact that the script has, in another part: ``restitution`` of a body."""
+    having = [] if reader.names.catalogue is None else reader.names.catalogue.having(name)
+    words = [word for family, word in having if family == "contacts"]
+    for part, entry in reader.names.parts.items():
+        if entry.word in words and issubclass(cls, kinds.Kind) and cls.family in ("models", "objects"):
+            inner = "" if entry.fields is None else "..., "
+            own = f"{part}: " if part != entry.word else ""
+            told = f"{own}{{{entry.word}: {{{inner}{name}: {text}}}}}"
+            return f"'{part}' has it, the contact of the script: write `{told}` there"
+    return None
 
 
 def _is_record(arm: Any) -> bool:

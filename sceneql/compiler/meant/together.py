@@ -28,6 +28,8 @@ BEGINS, ENDS = ("start", "from", "begin", "t0", "after"), ("end", "to", "until",
 """Fields of other programs for the times between which something is to be seen."""
 DRAGS, AIR = ("cd", "c_d", "cw", "drag_coefficient", "coefficient"), "1.2 kg/m^3"
 """Fields of other programs for a drag coefficient, and the density of air."""
+KEYED = ("curve", "cycle", "delay", "then")
+"""Fields of keyframes."""
 SLOW = ("slowmo", "slowmotion", "slowdown", "slow")
 STRENGTHS = ("value", "strength", "magnitude", "torque", "force", "size", "amount", "moment")
 WAYS = ("axis", "direction", "about", "dir")
@@ -50,7 +52,7 @@ def together(name: str, unknown: Sequenced[str], node: Mapping, known: Collectio
     told = told or _corners(name, unknown, node, known) or _members(name, unknown, node, known)
     told = told or _states(name, unknown, node, known) or _slower(name, node, known)
     told = told or _along(name, unknown, node, known) or _shown(name, unknown, node, known)
-    told = told or _drag(name, unknown, node, known) or _two_places(name, node, known)
+    told = told or _of_keys(name, node) or _drag(name, unknown, node, known) or _two_places(name, node, known)
     if told is not None:
         return told
     ours = same_as(name, known)
@@ -244,3 +246,12 @@ def _two_places(name: str, node: Mapping, known: Collection[str]) -> str | None:
         return None
     first, second = (f"{text}.position" if text.replace(".", "_").isidentifier() else text for text in texts)
     return f"write `from: {first}, to: {second}`"
+
+
+def _of_keys(name: str, node: Mapping) -> str | None:
+    """The help for a field of keyframes that stands beside them."""
+    keyed = next((key for key, one in node.entries.items() if isinstance(one, Mapping) and "keys" in one.entries), None)
+    if name not in KEYED or keyed is None:
+        return None
+    told = f"{keyed}: {{keys: {{...}}, {name}: {node.entries[name].span.text}}}"
+    return f"it stands beside `keys`, in the same braces: write `{told}`"

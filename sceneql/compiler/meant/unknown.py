@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Collection
 from collections.abc import Mapping as Naming
 from collections.abc import Sequence as Sequenced
+from itertools import pairwise
 from typing import Any
 
 from pydantic import BaseModel
@@ -19,6 +20,7 @@ from sceneql.kinds import written_name
 from sceneql.language.replaced import word_of
 from sceneql.language.scope import Entry
 from sceneql.language.script import Script
+from sceneql.language.sections import empty
 from sceneql.language.tree import Mapping, Node, Scalar
 from sceneql.quantities.diagnostic import STRONG, Diagnostics, ScriptError, all_same_as, nearest, same_as
 from sceneql.quantities.expression import Number, Vector
@@ -193,12 +195,23 @@ def word_meant(
         return f"did you mean '{same}'?"
     if family == "materials" and (other := instead(family, entry.word)) is not None:
         return other
+    if "//" in entry.word:
+        return f"a comment begins with `#`: write `{entry.word.replace('//', '#', 1)}`"
+    if (others := catalogue.families_of(entry.word)) and (family, others[0]) == ("models", "objects"):
+        shape = f"objects: {{{entry.name}: {{{entry.word}: {{...}}}}}}"
+        return f"a shape is an object, which a model moves: write `{shape}`, and `{{rigid: {{of: {entry.name}}}}}` here"
     if others := catalogue.families_of(entry.word):
         return f"it belongs under '{others[0]}:'"
     if fields is None and not entry.word.isidentifier() and (having := having_fields([entry.name], family, catalogue)):
         word = DEFAULT.get(family) if DEFAULT.get(family) in having else having[0]
         text = f"main: {{{word}: {{{entry.name}: {entry.word}}}}}"
         return f"a part has a name, and a word around its fields: write `{text}`"
+    table = script.root.entries.get(family)
+    if isinstance(table, Mapping) and catalogue.load(family, entry.name) is not None:
+        before = dict(pairwise(table.entries)).get  # the entry behind each
+        above = next((one for one in table.entries if before(one) == entry.name), None)
+        if above is not None and empty(table.entries[above]):
+            return f"what belongs to `{above}` is indented below it: write two spaces more before `{entry.name}:`"
     if (named := catalogue.load(family, entry.name)) is not None:
         inner = _fields_of(entry, named)
         return f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: {inner}}}`"
