@@ -134,7 +134,7 @@ class Tools:
 
         renderer = self._renderer(output)
         arrangement = self._arrangement(output, moment, camera, panel)
-        moment = replace(moment, room=arrangement.room)
+        moment = replace(moment, room=arrangement.room, rooms=arrangement.rooms)
         eye = self._eye(output, moment.time, camera)
         frame = frame_of(self.graph, self.name, output.pixels, moment, self._frames, eye)
         self.prepare(output)()

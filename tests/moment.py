@@ -46,6 +46,8 @@ class FakeMoment:
     box: tuple[Any, Any] = ((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0))
     room: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
+    rooms: tuple[tuple[float, Any], ...] = ()
+
     end: float = 1.0
 
     def at(self, value: Value) -> Any:

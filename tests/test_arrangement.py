@@ -124,7 +124,7 @@ def test_what_a_camera_follows_stays_clear_of_overlays(tmp_path):
     tools, heights, distances = Tools(graph, "film", Report(), tmp_path / "it"), [], []
     for moment in simulate(graph, [0.0, 0.4, 0.6, 0.9, 1.5, 2.0, 3.0, 4.0]):
         found = tools._arrangement(output, moment, None, tools_file.WHOLE)
-        view = eye.view(output.pixels, replace(moment, room=found.room))
+        view = eye.view(output.pixels, replace(moment, room=found.room, rooms=found.rooms))
         center = moment.read("fall", "position")
         ball = outline(center + 0.2 * DIRECTIONS, view)
         shown = [kind for kind in found.overlays.values() if kind.show is None or moment.at(kind.show)]
@@ -136,6 +136,32 @@ def test_what_a_camera_follows_stays_clear_of_overlays(tmp_path):
     assert heights[0] < 0.15
     assert heights[-1] > 0.4
     assert np.diff(distances).max() < 1e-12  # but for rounding, at rest
+
+
+def test_a_camera_that_moves_leaves_overlays_the_room_with_which_the_film_is_largest(tmp_path):
+    """At the start of a throw room at the left is as good as below; the way is wide."""
+    text = FALL.format(overlays="{speed: {graph: {y: length(fall.velocity)}}}", size="640 360")
+    text = text.replace("window: 0 s", "").replace("mass: 1 kg", "mass: 1 kg, velocity: 6 6 0 m/s")
+    _, _, found, _ = arranged(tmp_path, text)
+    assert found.room[0] == 0.0
+    assert found.room[3] > 0.2
+
+
+def test_a_title_that_has_gone_takes_no_room_from_a_camera_that_moves(tmp_path):
+    text = FALL.format(overlays=TITLES, size="640 360").replace("window: 0 s", "")
+    (tmp_path / "scene.yaml").write_text(text)
+    graph = load(tmp_path / "scene.yaml")
+    eye, output = graph.tasks[graph.cameras["film"]].kind, graph.tasks["film"].kind
+    nearer = []
+    for moment in simulate(graph, [0.0, 2.0]):
+        found = Tools(graph, "film", Report(), tmp_path / "it")._arrangement(output, moment, None, tools_file.WHOLE)
+        always, then = (
+            np.linalg.norm(eye.view(output.pixels, replace(moment, room=found.room, rooms=rooms)).origin)
+            for rooms in ((), found.rooms)
+        )
+        nearer.append(always / then)
+    assert nearer[0] == pytest.approx(1.0, abs=1e-3)
+    assert nearer[1] > 1.05
 
 
 def test_room_for_overlays_makes_nothing_smaller_than_margins_inside_of_it_would():

@@ -150,7 +150,7 @@ def test_a_wide_cloth_is_gone_to_when_the_ball_that_hit_it_has_come_to_rest():
     fit = partial(fitted, axes=axes_towards((0.55, 0.38, 1.0)), slopes=(0.4, 0.22))
     whole, _ = fit(np.concatenate([rows[:, 1:], [[0.0, 0.5, 0.0]]]))
     back = axes_towards((0.55, 0.38, 1.0))[2]
-    follower = Follower(with_feet(rows, 0.5), rows[:0, 1:], fit, back, 0.25)
+    follower = Follower(with_feet(rows, 0.5), rows[:0, 1:], lambda seen, span: fit(seen), back, 0.25)
     assert follower.pays(whole)
     assert np.linalg.norm(follower.at(1.0)) < np.linalg.norm(whole) / 1.3
 
@@ -165,4 +165,4 @@ def test_a_camera_that_looks_down_goes_along_for_more_alone(towards, goes):
                      for x in (-1.0, 1.0) for y in (-1.0, 1.0)])  # fmt: skip
     fit = partial(fitted, axes=axes, slopes=(0.4, 0.4))
     still, _ = fit(rows[:, 1:])
-    assert Follower(rows, rows[:0, 1:], fit, axes[2], 0.1).pays(still) is goes
+    assert Follower(rows, rows[:0, 1:], lambda seen, span: fit(seen), axes[2], 0.1).pays(still) is goes

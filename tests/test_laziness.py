@@ -66,6 +66,7 @@ def test_check_imports_three_libraries_and_what_these_import(tmp_path):
 def test_check_imports_nothing_that_only_runs_need(tmp_path):
     looks = (
         "materials: {paint: {glossy: {color: tomato}}}\nlights: [studio]\ncameras: {front: perspective}\n"
+        + "contacts: [collision]\n"  # else where the floor lies is looked at
         + FALL.replace("objects:\n", "objects:\n  floor: plane\n")
     )
     names = modules_after(tmp_path, looks, "check")

@@ -9,7 +9,10 @@ import rigid_scenes
 import runs
 from runs import complaint
 from sceneql.cli import cli
+from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
+from sceneql.run.run import Run
+from sceneql.run.watch import Watch
 
 SOLVER = "semi_implicit_euler: {step: 5 ms}"
 
@@ -327,3 +330,24 @@ contacts: {{roll: {{collision: {{between: [roller, ramp], mode: {mode}}}}}}}
     assert told.value.diagnostics[0].help == "move 'ball' by 0.00232 0.00636 0 m"
     moved = script.replace("-2 1.04 0 m", "-1.99768 1.04636 0 m")
     runs.watch(tmp_path, moved, [0.0], pruned=False)
+
+
+def test_energy_that_contacts_make_in_long_steps_is_told(tmp_path):
+    (tmp_path / "scene.yaml").write_text("""
+clock: {end: 6 s}
+objects: {floor: plane, b: {box: {size: 0.2 1 0.3 m, position: 0 2 0 m}}}
+models: {m: {rigid: {of: b, density: 500 kg/m^3, velocity: 1 0 0 m/s, spin: 0 0 30 rad/s}}}
+forces: [gravity]
+contacts: {c: {collision: {restitution: 0.9, friction: 0, mode: local}}}
+solvers: {main: {rk4: {step: 50 ms}}}
+""")
+    run = Run(load(tmp_path / "scene.yaml", pruned=False))
+    watch = Watch(run, always=True)
+    for time in np.arange(121) / 20:
+        watch.look(run.at(time))
+    assert 0.05 < max(watch.balances[0].drifts) < 0.5
+    (told,) = watch.warnings()
+    assert (told.code, told.help) == (
+        "energy-gained",
+        "contacts made it: take shorter steps, or `mode: exact` where it can be",
+    )

@@ -13,17 +13,16 @@ from pathlib import Path
 from typing import Any
 
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.meant.by_record import balls_of, judged_as
 from sceneql.compiler.meant.entries import improve_entries, typed_meant
-from sceneql.compiler.meant.unknown import (
+from sceneql.compiler.meant.misplaced import improve_sections
+from sceneql.compiler.meant.unknown import mover_of, report_unknown, word_having, word_meant
+from sceneql.compiler.meant.unknown_part import (
     beside_world,
-    mover_of,
     other_family,
     part_meant,
-    report_unknown,
     several_meant,
     warn_of_another,
-    word_having,
-    word_meant,
 )
 from sceneql.compiler.names import Names, Parsed
 from sceneql.compiler.over_time import check_instants
@@ -38,7 +37,7 @@ from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure, whole, written
 from sceneql.language.tree import Sequence as SequenceNode
-from sceneql.quantities.diagnostic import STRONG, Diagnostics, nearest, suggestion
+from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.expression import Type
 
 SETTINGS = tuple(Settings.model_fields)
@@ -71,17 +70,17 @@ def check(script: Script, catalogue: Catalogue, found: Diagnostics, parsed: Pars
     """
     checker = _Checker(script, catalogue, found, parsed or Parsed())
     improve_entries(script, catalogue, found)
-    for family, entries in script.sections.items():
-        for name in entries:
+    for name, family in [*checker.family_of.items()]:
+        if name in script.sections.get(family, ()):
             checker.task(family, name)
     made = dict(checker.tasks)
-    for family, entries in script.unmade.items():
-        for name in entries:
-            checker.task(family, name)
+    for name, family in [*checker.family_of.items()]:  # of templates without an instance, and with a name used twice
+        checker.task(family, name)
     checker.tasks = made
     checker.gives()
     checker.defaults()
     settings = checker.settings()
+    improve_sections(script, catalogue, checker.reader(), found)
     tasks = checker.whole_tasks() if found.errors else checker.tasks
     known = frozenset(checker.without), frozenset(checker.implied)
     return Checked(script, settings, tasks, checker.timed, tuple(checker.files), *known)
@@ -109,8 +108,8 @@ class _Checker:
         self.folder = Path(script.sources[0].name).parent
         for family, entries in (*script.sections.items(), *script.unmade.items()):
             for name, entry in entries.items():
-                self.family_of.setdefault(name, family)  # a name used twice is reported by the language
-                self.entries.setdefault(name, entry)
+                own = name if name not in self.entries else f"{name} of {family}"  # reported by the language
+                self.family_of[own], self.entries[own] = family, entry
         templates = script.root.entries.get("templates")
         self.templates = templates.entries if isinstance(templates, MappingNode) else {}
         define = script.settings.get("define")
@@ -201,7 +200,7 @@ class _Checker:
         for name, node in self.names.defines.items():
             self.names.define(name, node.span)
         given = {key: self.script.settings[key] for key in SETTINGS if key in self.script.settings}
-        reader = Reader(self.names, self.found, lambda node, mark, name: None, "", self.folder, self.files)
+        reader = self.reader()
         result: dict[str, Any] = {}
         for key, node in given.items():
             info = Settings.model_fields[key]
@@ -215,14 +214,18 @@ class _Checker:
             check_instants(expect, settings.clock.end, self.found)
         return settings
 
+    def reader(self) -> Reader:
+        """A reader of what is no part."""
+        return Reader(self.names, self.found, lambda node, mark, name: None, "", self.folder, self.files)
+
     def kind(self, family: str, entry: Entry) -> type[Kind] | None:
         """The class of an entry's word; None after reporting that there is none."""
         cls = self.catalogue.load(family, entry.word)
         if cls is None:
             words = self.catalogue.choices(family)
-            hint = typed_meant(entry.fields, family, self.catalogue) or word_meant(
-                entry, family, self.catalogue, self.family_of, self.script
-            )
+            hint = balls_of(self.names, entry.fields) if family == "objects" else None
+            hint = hint or typed_meant(entry.fields, family, self.catalogue)
+            hint = hint or word_meant(entry, family, self.catalogue, self.family_of, self.script)
             help = hint or "the words are " + ", ".join(words)
             self.found.error("unknown-word", f"'{entry.word}' is no word of {family}", entry.word_span, help=help)
         return cls
@@ -263,7 +266,7 @@ class _Checker:
             self.without.add(name)
             return
         known = self.kind(family, entry)
-        cls = known or self.meant(family, entry)
+        cls = known or judged_as(entry, family, self.catalogue, self.names)
         if cls is None:
             return
         needs: list[str] = []
@@ -292,19 +295,6 @@ class _Checker:
             return
         needs += [link.task for value in values_of(kind) for link in value.links]
         self.tasks[name] = Task(name, entry.word, kind, entry.span, tuple(dict.fromkeys(needs)))
-
-    def meant(self, family: str, entry: Entry) -> type[Kind] | None:
-        """The class of the word nearest to an unknown one, if the entry's fields suit it; else None."""
-        fields, near = entry.fields, nearest(entry.word, words := self.catalogue.choices(family))
-        cls = None if near is None else self.catalogue.load(family, near)
-        if cls is None or not isinstance(fields, MappingNode):
-            return None
-        known = {written_name(name): info for name, info in cls.model_fields.items()}
-        required = {name for name, info in known.items() if info.is_required()}
-        fits = known.keys() >= fields.entries.keys() and (fields.partial or required <= fields.entries.keys())
-        matched = {nearest(one, known, STRONG) for one in fields.entries} - {None}
-        like = nearest(entry.word, words, STRONG) == near and bool(matched) and required <= matched
-        return cls if fits or like else None
 
     def refer(self, node: Node, mark: Refers, anonymous: str, entry: Entry) -> Ref | None:
         """The part that a field refers to, made of an entry written in place; None after an error."""

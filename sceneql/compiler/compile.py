@@ -33,12 +33,12 @@ from sceneql.compiler.passes.readable import report_unreadable
 from sceneql.compiler.passes.sizes import check_sizes
 from sceneql.compiler.passes.slopes import warn_of_values
 from sceneql.compiler.passes.stable_steps import warn_of_steps
-from sceneql.compiler.passes.unforced import warn_of_slow, warn_of_unforced, warn_of_weak
+from sceneql.compiler.passes.unforced import warn_of_even, warn_of_slow, warn_of_unforced, warn_of_weak
 from sceneql.compiler.passes.unmoved import report_moving
 from sceneql.compiler.passes.unseen import warn_of_buried, warn_of_dim, warn_of_unseen
 from sceneql.compiler.passes.unshown import warn_of_unshown, warn_of_unused_cameras
 from sceneql.compiler.passes.unused import warn_of_unused_defines
-from sceneql.compiler.passes.upward import warn_of_z_high, warn_of_z_up
+from sceneql.compiler.passes.upward import warn_of_rising, warn_of_z_high, warn_of_z_up
 from sceneql.compiler.studies import check_studies
 from sceneql.compiler.values_below import values_of
 from sceneql.doing import duration
@@ -102,6 +102,7 @@ def compile_script(
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
     warn_of_values(tasks, groups, found)
     warn_of_unforced(tasks, groups, found)
+    warn_of_even(tasks, found)
     warn_of_slow(tasks, checked.settings.clock.end, found)
     warn_of_weak(tasks, groups, checked.settings.clock.end, found)
     warn_of_balls(tasks, groups, found)
@@ -111,6 +112,7 @@ def compile_script(
     warn_of_left_behind(tasks, found)
     warn_of_z_up(tasks, found)
     warn_of_z_high(tasks, found)
+    warn_of_rising(tasks, found)
     warn_of_unseen(tasks, drawn, cameras, found)
     warn_of_buried(tasks, found)
     warn_of_dim(checked.tasks, found)

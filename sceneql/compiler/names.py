@@ -27,6 +27,8 @@ from sceneql.quantities.units import continues_unit, in_words, unit_hint
 
 WORDS = re.compile(WORD)
 PICTURES = ("jpg", "jpeg", "png", "hdr", "exr", "tif", "tiff", "webp", "gif")
+COPY_NUMBERS = ("index", "idx", "id", "n", "k", "j", "copy", "number", "num", "instance")
+"""Names of other programs for the number of a copy."""
 DEEPEST = 40
 """Largest depth of defines that are read within one another; what a define needs is read before it."""
 
@@ -280,10 +282,10 @@ class Names:
             message = f"'{wanted}' is a part, not a value"
             some = f"write one of its outputs, such as '{self._some_output(wanted)}'"
             hint: str | None = (
-                some if self.outputs_of(wanted) else instead("name", wanted) or "it has no values to read"
+                some if self.outputs_of(wanted) != {} else instead("name", wanted) or "it has no values to read"
             )
         else:
-            hint = instead("name", wanted)
+            hint = self._copy_number(wanted) or instead("name", wanted)
             hint = hint or suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time", *CONSTANTS])
             model = None if hint else self.model_of(parts[0])
             if model is not None:
@@ -323,6 +325,19 @@ class Names:
             names += [*scope.fields, *scope.names]
             scope = scope.outer
         return names
+
+    def _copy_number(self, wanted: str) -> str | None:
+        """The help for the number of a copy by another program's name: the name that it has in the copies around."""
+        scope = self.scope if wanted.lower() in COPY_NUMBERS else None
+        while scope is not None:
+            for name, node in scope.fields.items():
+                text = node.span.text
+                if isinstance(node, Scalar) and node.kind == "integer" and text != node.text:  # made by `repeat`
+                    here = f"the number of a copy is `{name}` here"
+                    named = text[:-1] if text.startswith("{") and "\n" not in text else ""
+                    return f"{here}; write `repeat: {named}, as: {wanted}}}` for another name" if named else here
+            scope = scope.outer
+        return None
 
     def _some_output(self, task: str) -> str:
         outputs = self.outputs_of(task) or {}

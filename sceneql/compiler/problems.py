@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -29,13 +30,26 @@ def validated(cls: type[BaseModel], got: dict[str, Any], node: Node | None, span
     except ValidationError as error:
         for problem in error.errors():
             exceeds = isinstance(problem.get("ctx", {}).get("error"), kinds.Exceeds)
-            found.error("limit-refused" if exceeds else "invalid", _text(problem), _place(problem["loc"], node, span))
+            text = _text(problem)
+            help = None if problem["loc"] else _with_field(cls, text, node)
+            place = _place(problem["loc"], node, span)
+            found.error("limit-refused" if exceeds else "invalid", text, place, help=help)
         return None
     problems = [problem for one, problem in context if one is result]  # those inside were reported
     for told in problems:
         place = _place(told.path, node, span, told.at_key, told.part)
         found.error(told.code, told.text, place, help=told.help)
     return None if problems and issubclass(cls, kinds.Kind) else result
+
+
+def _with_field(cls: type[BaseModel], text: str, node: Node | None) -> str | None:
+    """The help for a word that needs a field, whose example stands first in the text: the word with it."""
+    lacking = re.search(r" needs [^`]*`(\w+: [^`]+)`", text)
+    if lacking is None or not issubclass(cls, kinds.Kind) or (node is not None and "\n" in node.span.text):
+        return None
+    word, fields = cls.__module__.rpartition(".")[2], node.entries if isinstance(node, Mapping) else {}
+    inner = ", ".join([*(f"{name}: {one.span.text}" for name, one in fields.items()), lacking[1]])
+    return f"write `{{{word}: {{{inner}}}}}`"
 
 
 def _text(problem: Any) -> str:

@@ -93,7 +93,7 @@ def read_expr(
         case MappingNode():
             if "keys" in node.entries:
                 return _keys(node, shape, dimension, what, names, found)
-            if shape == (3,):
+            if shape == (3,) or (shape is None and what != "define" and {*node.entries} == {*COMPONENTS}):
                 return _by_component(node, dimension, what, names, found)
             texts = [item.span.text for item in node.entries.values() if isinstance(item, Scalar)]
             listed = (shape is None or shape[:1] == (None,)) and len(texts) == len(node.entries)
@@ -181,7 +181,9 @@ def _by_component(
 def _keys(
     node: MappingNode, shape: Shape | None, dimension: Dimension | None, what: str, names: Names, found: Diagnostics
 ) -> Expr | None:
-    shape = shape or ()
+    if shape is None or dimension is None:
+        known = _type_of_keys(node, what, names)
+        shape, dimension = known.shape if shape is None else shape, dimension or known.dimension
     quantity = Quantity(dimension or PLAIN, shape)
     of_slope = Quantity((dimension or PLAIN) / TIME, shape)
 
@@ -200,6 +202,21 @@ def _keys(
     if dimension is None and isinstance(keys, Keys):
         return replace(keys, type=Type(shape, common(key.value.type.dimension for key in keys.keys) or PLAIN))
     return keys
+
+
+def _type_of_keys(node: MappingNode, what: str, names: Names) -> Type:
+    """The type of keys where the field takes any: the first key's shape, and the dimension of the first that has one.
+
+    Of a plain number where none can be read.
+    """
+    table = node.entries["keys"]
+    items = table.entries.values() if isinstance(table, MappingNode) else ()
+    nothing = Diagnostics()
+    own = replace(names, found=nothing)
+    values = [one.entries.get("value", one) if isinstance(one, MappingNode) else one for one in items]
+    types = [expr.type for one in values if (expr := read_expr(one, None, None, what, own, nothing)) is not None]
+    dimension = next((one.dimension for one in types if one.dimension is not None and not one.dimension.plain), None)
+    return Type(types[0].shape if types else (), dimension)
 
 
 def time_reader(names: Names, found: Diagnostics) -> ReadTime:

@@ -55,17 +55,22 @@ def trouble(state: ModelState) -> str:
     at = [k for k, each in enumerate(state.ints) if each == -1]
     longer, longest = _too_long(state)
     if longer:
-        told = f"in {longer:.0f} steps longer than {longest:.2g} s masses on springs touched something: "
+        told = f"in {_steps(longer)} longer than {longest:.2g} s masses on springs touched something: "
         return told + "where rigid bodies collide, too, such steps can make energy: shorter ones, or `auto`, do not"
     jammed = sum(state.floats[state.ints[k + 1]] for k, each in enumerate(state.ints) if each == -2)
     if jammed:
         return f"at {jammed:.0f} instants no force fitted the slip of rigid bodies: friction stopped it at once"
     loose, crowded = (sum(state.floats[state.ints[k + j]] for k in at) for j in (5, 6))
     if crowded:
-        return f"in {crowded:.0f} steps rigid bodies had more contacts than outputs have room for: all acted"
+        return f"in {_steps(crowded)} rigid bodies had more contacts than outputs have room for: all acted"
     if not loose:
         return ""
-    return f"in {loose:.0f} steps contacts of rigid bodies were not solved: friction there is not exact"
+    return f"in {_steps(loose)} contacts of rigid bodies were not solved: friction there is not exact"
+
+
+def _steps(count: float) -> str:
+    """So many steps."""
+    return "1 step" if count == 1 else f"{count:.0f} steps"
 
 
 def _too_long(state: ModelState) -> tuple[float, float]:

@@ -86,6 +86,10 @@ class Moment(Protocol):
         """Margins covered by overlays at the picture's left, top, right and bottom, as parts of width and height."""
 
     @property
+    def rooms(self) -> tuple[tuple[float, tuple[float, float, float, float]], ...]:
+        """The margins that are needed at some instants [s] of the film; without any they are always ``room``."""
+
+    @property
     def variants(self) -> tuple[str, ...]:
         """The names of the script's variants."""
 

@@ -136,6 +136,8 @@ class Refers:
     """Whether it may name one of several bodies, `stones.first`, or the `world`."""
     panel: bool = False
     """Whether it fills a panel of a layout."""
+    showing: str = ""
+    """The word that shows a value where the value itself was written in place of a part, for messages."""
 
     def __str__(self) -> str:
         return f"{self.family} or {self.also}" if self.also else self.family

@@ -6,18 +6,23 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from typing import Final
 
+from sceneql.language.in_group import in_group
 from sceneql.language.scope import Broken
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken
-from sceneql.quantities.diagnostic import Diagnostics, Note, nearest, suggestion
+from sceneql.quantities.diagnostic import STRONG, Diagnostics, Note, nearest
 from sceneql.quantities.instead import instead
 
 NAMED: Final = ("define", "templates", "parts", "defaults", "variants", "expect", "studies")
 """Sections beside the families that hold names."""
 
+TEXTS: Final = ("about", "background", "sceneql")
+"""Sections that hold a single value."""
 NOTHING: Final = ("none", "no", "false", "off")
 """Words of what is not to be there."""
 TYPES: Final = ("type", "kind", "shape", "geometry", "primitive")
 """Keys by which other programs tell the word of a part."""
+NAMES: Final = ("name", "id")
+"""Keys by which other programs name a part."""
 SHOWN: Final = 80
 """Longest text of fields that a message repeats."""
 _ENTRY = "an entry is `name: word` or `name: {word: {fields}}`"
@@ -79,10 +84,15 @@ def read_entry(what: str, node: Node, found: Diagnostics, sections: Collection[s
         typed = next((key for key in TYPES if key in words and isinstance(node.entries[key], Scalar)), None)
         if typed is not None:
             word = node.entries[typed].span.text
-            inner = ", ".join(f"{key}: {node.entries[key].span.text}" for key in words if key != typed)
-            help = (
-                f"the word stands around its fields: write `{{{word}: {{{inner if len(inner) <= SHOWN else '...'}}}}}`"
-            )
+            own = next((node.entries[key].span.text for key in words if key in NAMES), "")
+            more = [key for key in words if key != typed and key not in NAMES]
+            inner = ", ".join(f"{key}: {node.entries[key].span.text}" for key in more)
+            inner = f"{{{word}: {{{inner if len(inner) <= SHOWN else '...'}}}}}"
+            help = f"the word stands around its fields: write `{inner}`"
+            if own.isidentifier():
+                help = f"its name stands before its word, without a dash: write `{own}: {inner if more else word}`"
+        elif main not in ("", "group") and "scale" in words:
+            help = f"a group scales what is in it: write `{name}: {in_group(main, _fields_of(main, words, node))}`"
         elif (other := instead("entry", words[0]) or next(filter(None, beside), None)) is not None:
             help = other
         elif main:
@@ -91,6 +101,13 @@ def read_entry(what: str, node: Node, found: Diagnostics, sections: Collection[s
         return None
     fields = node.entries[words[0]]
     return Written(node.keys[words[0]], None if empty(fields) else fields, node.entries.get("repeat"))
+
+
+def _fields_of(main: str, words: Collection[str], node: Mapping) -> dict[str, Node]:
+    """The fields of an entry's word and those beside it."""
+    inner = node.entries[main]
+    fields = dict(inner.entries) if isinstance(inner, Mapping) else {}
+    return fields | {name: node.entries[name] for name in words if name != main}
 
 
 def _put_inside(main: str, words: Collection[str], node: Mapping) -> str:
@@ -117,21 +134,41 @@ def with_known_keys(node: Mapping, known: Collection[str], holder: str, lost: Br
             other = instead("section", key) or instead("section", key.partition(" ")[0])
             if other is not None and isinstance(value, Scalar) and value.text.lower() in NOTHING:
                 other = instead("absent", key) or other
-            near = nearest(key, known) if other is None else None
+            near = _near(key, known, value) if other is None else None
             above = next(reversed(result.entries), "") if not node.flow else ""
             if above and empty(result.entries[above]) and not isinstance(value, Scalar) and near is None:
                 other = f"what belongs to `{above}:` is indented below it: write two spaces before `{key}:`"
             every = f"{holder} may have {', '.join(dict.fromkeys(known))}: `sceneql words sections`"
-            help = other or suggestion(key, known) or every
+            help = other or (f"did you mean '{near}'?" if near is not None else every)
             found.error("unknown-section", f"{holder} has no section '{key}'", node.keys[key].span, help=help)
             taken = node.entries.keys() | result.entries.keys()
-            if near is not None and near not in taken and not isinstance(value, Scalar):
+            whole = key != str(near)[:-1] or _holds_parts(value)
+            if near is not None and near not in taken and not isinstance(value, Scalar) and whole:
                 name = near
             else:
                 for inner in _names_in(value):
                     lost.add(inner)
         result.entries[name], result.keys[name] = value, node.keys[key]
     return result
+
+
+def _holds_parts(value: Node) -> bool:
+    """Whether a value is a section of parts by name, and not a part itself: ``camera: {perspective: {...}}`` is one."""
+    parts = value.entries if isinstance(value, Mapping) else {}
+    for name, one in parts.items():
+        inner = list(one.entries.values()) if isinstance(one, Mapping) else []
+        word = isinstance(one, Scalar) and one.kind == "text" and name not in TYPES and one.text.isidentifier()
+        if not word and not (len(inner) == 1 and (isinstance(inner[0], Mapping) or empty(inner[0]))):
+            return False
+    return True
+
+
+def _near(key: str, known: Collection[str], value: Node) -> str | None:
+    """The section most likely meant by its letters; one that is but a little like it has to suit the value."""
+    if (strong := nearest(key, known, STRONG)) is not None:
+        return strong
+    near = nearest(key, known)
+    return near if near is None or isinstance(value, Scalar) == (near in TEXTS) else None
 
 
 def _names_in(node: Node) -> list[str]:

@@ -123,16 +123,39 @@ def _long_key(text: str, at: int, flow: int | None) -> int | None:
     return start if at - start > _LONGEST else None
 
 
+CLOSING = {"[": "]", "{": "}", "(": ")", "]": "[", "}": "{"}
+"""Brackets and those that go with them."""
+
+
+def _innermost(text: str) -> str | None:
+    """The last bracket of a text that is open, outside of quotes; None for none."""
+    opened: list[str] = []
+    for character in re.sub(r"\"[^\"]*\"|'[^']*'", "", text):
+        if character in "[{":
+            opened.append(character)
+        elif character in "]}" and opened:
+            opened.pop()
+    return opened[-1] if opened else None
+
+
 def _in_flow(source: Source, at: int, opening: int) -> Diagnostic:
     if at < len(source.text) and source.position(at)[0] == source.position(opening)[0]:
         if (braces := _for_braces(source.text[opening:at])) is not None:
             return _syntax("fields stand in braces, not in parentheses", source, at, braces)
+        if source.text[at : at + 1] in CLOSING and (open_one := _innermost(source.text[opening:at])) is not None:
+            close = CLOSING[open_one]
+            help = f"write `{close}` before it, which closes `{open_one}`"
+            return _syntax(f"'{source.text[at]}' closes no '{open_one}'", source, at, help)
+        if (named := re.match(r"[%@`]([^\W\d]\w*)", source.text[at:])) is not None:
+            return _syntax("a name stands by itself", source, at, f"write `{named[1]}`")
         if source.text[at : at + 1] == ":":
             help = "a text that holds a colon goes in quotes; items are separated by commas"
             value = source.text[opening:at].rpartition(": ")[2]
             rest = re.split(r"[,}\n]", source.text[at + 1 :], maxsplit=1)[0]
             if (chosen := ternary(f"{value}:{rest}")) is not None:
                 return _syntax("a choice is written otherwise", source, at, f'write `"{chosen}"`')
+            if re.fullmatch(r"[A-Z][\w ]*", value.strip()) is not None and source.text[at + 1 : at + 2] == " ":
+                help = f'a text that holds a colon goes in quotes: write `"{value.strip()}:{rest.rstrip()}"`'
             if (parted := _PARTED.search(source.text[opening:at])) is not None:
                 help = f"fields are separated by commas: write `{parted[1].strip()}, {parted[2]}: ...`"
             return _syntax("a second colon in this value, where no key can stand", source, at, help)

@@ -34,6 +34,9 @@ EDGE = 0.06
 """Part of the width and height at each edge that a camera leaves free of the subject in any case."""
 MOST = 0.75
 """Largest fraction of the picture's width or height that overlays may keep free."""
+MOMENTS, SETS = 240, 6
+"""Number of instants at which overlays are asked whether they are shown; largest number of sets of them, of which one
+after the other is gone for good, that a camera that moves leaves rooms of their own."""
 WAYS = 64
 """Largest number of ways to keep overlays free that are tried."""
 APART = 10.0
@@ -48,6 +51,8 @@ class Arrangement:
 
     overlays: Mapping[str, Overlay]
     room: Room = NO_ROOM
+    rooms: tuple[tuple[float, Room], ...] = ()
+    """Room at each of some instants [s], for a camera that moves, where some of the overlays go for good."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +100,7 @@ def arranged(sight: Sight, tasks: Mapping[str, Task], fixed: Sequence[Box]) -> A
     parts = sight.parts()
     stand = {name: _boxes(sight, task) for name, task in tasks.items()}
     taken = [*fixed, *(box for name, boxes in stand.items() if name not in seekers for box in boxes.values())]
+    owner = {box: name for name, boxes in stand.items() for box in boxes.values()}
     views = list(_views(sight))
     masks = covered(parts, views, sight.size)
     for name in sorted(seekers, key=lambda name: -max(map(_area, stand[name].values()), default=0)):
@@ -104,7 +110,28 @@ def arranged(sight: Sight, tasks: Mapping[str, Task], fixed: Sequence[Box]) -> A
             place = next(place for place, cost in costs.items() if cost <= (least and least + ALIKE))
             overlays[name] = overlays[name].model_copy(update={"place": place})
             taken.append(stand[name][place])
-    return Arrangement(overlays, _room(sight, parts, taken, len(views) > 1) if sight.yields else NO_ROOM)
+    if not sight.yields:
+        return Arrangement(overlays)
+    rooms = {tuple(taken): _room(sight, parts, taken, len(views) > 1)}
+    if len(views) == 1:
+        return Arrangement(overlays, rooms[*taken,])
+    shown = {box: _shown(sight, overlays[owner[box]]) for box in taken if box in owner}
+    there = [tuple(box for box in taken if box not in shown or any(shown[box][k:])) for k in range(MOMENTS + 1)]
+    if 1 < len(set(there)) <= SETS:
+        rooms |= {boxes: _room(sight, parts, boxes, moves=True) for boxes in set(there)}
+        times = (sight.moment.end * k / MOMENTS for k in range(MOMENTS + 1))
+        steps = tuple((time, rooms[boxes]) for time, boxes in zip(times, there, strict=True))
+        return Arrangement(overlays, rooms[*taken,], steps)
+    return Arrangement(overlays, rooms[*taken,])
+
+
+def _shown(sight: Sight, overlay: Overlay) -> list[bool]:
+    """Whether an overlay is shown at MOMENTS + 1 even instants of the film; of one that reads the run, always."""
+    show, end = overlay.show, sight.moment.end
+    if show is None or show.links:
+        return [True] * (MOMENTS + 1)
+    then = (replace(sight.moment, now=end * k / MOMENTS, _values={}) for k in range(MOMENTS + 1))
+    return [bool(moment.at(show)) for moment in then]
 
 
 def _boxes(sight: Sight, task: Task) -> dict[str, Box]:
@@ -227,7 +254,7 @@ def _room(seen: Sight, parts: Sequence[tuple[Floats, Floats]], taken: Sequence[B
         ways = list(_ways(kept, seen.size))
         if not ways:
             return room
-        room = max(ways, key=lambda way: (round(_largeness(seen, parts, way)), -sum(way)))
+        room = max(ways, key=lambda way: (round(_largeness(seen, parts, way, moves)), -sum(way)))
 
 
 def _within(box: Box, room: Room, size: tuple[int, int]) -> bool:
@@ -259,11 +286,17 @@ def _ways(kept: Sequence[Box], size: tuple[int, int]) -> Iterator[Room]:
             yield left, top, right, bottom
 
 
-def _largeness(seen: Sight, parts: Sequence[tuple[Floats, Floats]], room: Room) -> float:
-    """Diagonal [pixels] of the subject in the picture with a room."""
+def _largeness(seen: Sight, parts: Sequence[tuple[Floats, Floats]], room: Room, moves: bool) -> float:
+    """Diagonal [pixels] of the subject in the picture with a room; the mean over the film if the camera ``moves``."""
     import numpy as np
 
-    view = seen.look(replace(seen.moment, room=room))
     points = [corner for low, high in parts for corner in corners(low, high)]
-    places = np.array([place for point in points if (place := projected(point, view)) is not None])
-    return float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0
+    moments, found = [replace(seen.moment, room=room)], []
+    if moves:
+        film = (seen.moment.end * k / INSTANTS for k in range(INSTANTS + 1))
+        moments = [replace(moments[0], now=time, _states={}, _values={}) for time in film]
+    for moment in moments:
+        view = seen.look(moment)
+        places = np.array([place for point in points if (place := projected(point, view)) is not None])
+        found.append(float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0)
+    return float(np.mean(found))

@@ -35,8 +35,9 @@ class Follower:
     """Instants and points (n, 1 + 3) of what moves, at least one."""
     standing: Floats
     """Points (n, 3) [m] that it sees at all times."""
-    fit: Callable[[Floats], tuple[Floats, float]]
-    """Position (3,) [m] and distance [m] of a still camera that sees points (n, 3)."""
+    fit: Callable[[Floats, tuple[float, float]], tuple[Floats, float]]
+    """Position (3,) [m] and distance [m] of a camera that holds still from one instant [s] to another and sees points
+    (n, 3)."""
     back: Floats
     """(3,) The unit vector from the scene to the camera."""
     window: float
@@ -86,15 +87,16 @@ class Follower:
         """Positions (k, 3) [m] of the cameras that see what moves near each of the instants."""
         import numpy as np
 
-        near = [np.abs(self.rows[:, 0] - time) <= self._reach + self._spacing for time in self.times]
-        fitted = [self._fitted(some) for some in near]
+        reach = self._reach + self._spacing
+        near = [np.abs(self.rows[:, 0] - time) <= reach for time in self.times]
+        fitted = [self._fitted(some, (time - reach, time + reach)) for time, some in zip(self.times, near, strict=True)]
         return np.array([place + max(0.0, self.least - far) * self.back for place, far in fitted])
 
-    def _fitted(self, some: Floats) -> tuple[Floats, float]:
-        """Position and distance of a camera that sees some rows and what stands."""
+    def _fitted(self, some: Floats, span: tuple[float, float]) -> tuple[Floats, float]:
+        """Position and distance of a camera that sees some rows and what stands, within a span of time [s]."""
         import numpy as np
 
-        return self.fit(np.concatenate([self.standing, self.rows[some, 1:]]))
+        return self.fit(np.concatenate([self.standing, self.rows[some, 1:]]), span)
 
     def pays(self, still: Floats) -> bool:
         """Whether it is better than a camera that holds still at a position (3,) [m]."""
@@ -104,7 +106,8 @@ class Follower:
         points = [np.concatenate([self.standing, self.rows[some, 1:]]) @ self.back for some in now]
         middles = np.array([(one.min() + one.max()) / 2 for one in points])
         depths = self.path(self.times) @ self.back - middles
-        alone = np.array([self._fitted(some)[0] for some in now]) @ self.back - middles
+        spans = [(time, time) for time in self.times]
+        alone = np.array([self._fitted(*each)[0] for each in zip(now, spans, strict=True)]) @ self.back - middles
         larger = MUCH_LARGER if self.back[1] > STEEP else LARGER
         better = ((still @ self.back - middles) >= larger * depths) & (alone >= FILLED * depths)
         return float(better.mean()) >= PART

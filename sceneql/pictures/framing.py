@@ -165,6 +165,15 @@ def inner(
     return (full * wide, half_height * min(high, headroom * (1 - margin))), (full * across, -half_height * below)
 
 
+def room_within(moment: Moment, span: tuple[float, float]) -> tuple[float, float, float, float]:
+    """Margins (left, top, right, bottom) that overlays cover from one instant [s] to another, parts of the picture."""
+    near = [room for time, room in moment.rooms if span[0] <= time <= span[1]]
+    if not near:
+        return moment.room
+    left, top, right, bottom = map(max, zip(*near, strict=True))
+    return left, top, right, bottom
+
+
 def _free(margin: float, gap: float, before: float, after: float) -> tuple[float, float]:
     """Fraction of the picture's width or height that is filled beside overlays, and its middle in half widths."""
     first, last = (max(0.5 * margin, side + gap) if side else 0.5 * margin for side in (before, after))

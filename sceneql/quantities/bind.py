@@ -13,7 +13,7 @@ from sceneql.quantities.expression import Call, Expr, Name, Number, Symbol, Type
 from sceneql.quantities.instead import time_meant
 from sceneql.quantities.literal import quantity
 from sceneql.quantities.operations import CONSTANTS, FLOATS, OPERATIONS
-from sceneql.quantities.rules import TURNS, MismatchError, listed, shape_text
+from sceneql.quantities.rules import FEWEST_DEGREES, TURNS, MismatchError, listed, shape_text
 from sceneql.quantities.scalars import apply
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import parse_unit, stands_below
@@ -28,8 +28,6 @@ SECONDS = "the time is `t` here, a plain number of seconds, as all numbers here:
 """The help of the error for `time` with a unit in a formula over plain numbers."""
 _TIMED = re.compile(r"([-+]?\d[\d.]*(?:[eE][-+]?\d+)?\s*)([^\W\d]\w*)\s*\*\s*time")
 """A number with a unit times the time."""
-FEWEST_DEGREES = 15.0
-"""A bare number that is a multiple of it is most likely meant in degrees."""
 ENDS = ("low", "high")
 COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
 """Names of a vector's components, by the number of components."""

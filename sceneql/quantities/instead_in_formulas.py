@@ -1,4 +1,4 @@
-"""Sentences on formulas: what to write instead of functions, signs, names and units of other programs.
+"""Sentences on formulas, and on models by other names: what to write instead of functions, signs, names and units.
 
 For messages alone.
 """
@@ -150,6 +150,7 @@ OF_FORMULAS = (
     ("unit name", "cc ccm", "a cc is a cubic centimeter: write `g/cm^3`"),
     ("unit name", "cp cps centipoise poise", "a poise is `0.1 Pa*s`, a hundredth of it `1e-3 Pa*s`"),
     ("name", "G", "write `6.6743e-11 m^3/(kg*s^2)`, or define it so: `define: {G: 6.6743e-11 m^3/(kg*s^2)}`"),
+    ("sign", "~", "leave the field out"),
     ("sign", "'", "a foot is `ft`, an inch `inch`: `2 3 1 ft`"),
     ("sign", '"', "an inch is `inch`, a foot `ft`: `4 2 1 inch`"),
     (
@@ -190,5 +191,61 @@ OF_FORMULAS = (
     ),
     ("negative", "strength", "leave out the minus: what pulls down, as gravity, points there by itself"),
     ("zero", "mass", "what never moves is an object without a model, or a body or mass with `fixed: yes`"),
+)
+"""(what the words were taken for, the words, the sentence)."""
+
+OF_MODELS = (
+    (
+        "models",
+        "skeleton bones bone armature rig ik inverse_kinematics kinematics chain_ik character puppet",
+        "limbs are joints that turn, and objects hang on them: write `{joints: {joints: {shoulder: {at: 0 1 0 m, turn:"
+        ' {about: z, angle: "40 deg*sin(2 rad/s*time)"}}, elbow: {of: shoulder, at: 0.5 0 0 m}}}}`; there is no inverse'
+        " kinematics: angles are told",
+    ),
+    (
+        "models",
+        "rope chain string cord thread wire cable",
+        "write `{mass_spring: {rope: {count: <count|20>, from: <from|0 2 0 m>, to: <to|1 2 0 m>}, mass: 10 g,"
+        " stiffness: <stiffness|1 kN/m>, pins: [start]}}`, or bodies on ties: `sceneql words rod`",
+    ),
+    (
+        "models",
+        "net trampoline sail flag curtain tablecloth towel blanket",
+        "write `{cloth: {size: <size|2 2 m>, pins: [top]}}`",
+    ),
+    (
+        "models",
+        "soft_body softbody soft jelly jello gel rubber_ball deformable_body",
+        "write `{elastic: {of: <of|ball>, law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}}}`, of an object",
+    ),
+    (
+        "models",
+        "balloon bubble skin cell_membrane",
+        "write `{membrane: {of: <of|ball>, law: {tension: 1 N/m}}}`, a skin in a `flow`: `sceneql words membrane`",
+    ),
+    (
+        "models",
+        "dust sparks sparkles snow rain fireworks",
+        "write `{particles: {emit: {rate: 100 /s, velocity: 0 3 0 m/s, lifetime: 2 s}}}`",
+    ),
+    (
+        "models",
+        "spring oscillator harmonic_oscillator spring_mass",
+        "write `{mass_spring: {masses: {hook: {position: 0 2 0 m, fixed: yes}, bob: {position: 0 1 0 m, mass: 1 kg}},"
+        " springs: [{between: [hook, bob], rest: 0.8 m, stiffness: 40 N/m}]}}`",
+    ),
+    (
+        "models",
+        "pendulum simple_pendulum",
+        "write `{equations: {start: {theta: 1, omega: 0}, rate: {theta: omega, omega: -9.81*sin(theta)}}}`; or a body"
+        " hangs on a tie: `sceneql words hinge`",
+    ),
+    (
+        "models",
+        "double_pendulum",
+        "two bodies hang on two ties: `{hinge: {between: [upper, world], at: 0 2 0 m, axis: 0 0 1}}` and `{hinge:"
+        " {between: [upper, lower], at: 0 1 0 m, axis: 0 0 1}}`; or their equations are a model: `sceneql words"
+        " equations`",
+    ),
 )
 """(what the words were taken for, the words, the sentence)."""

@@ -10,9 +10,10 @@ from fractions import Fraction
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Expr, Number, Type, Vector
 from sceneql.quantities.instead import instead
-from sceneql.quantities.operations import OPERATIONS
+from sceneql.quantities.operations import CONSTANTS, OPERATIONS
 from sceneql.quantities.span import Span
 from sceneql.quantities.unit_names import sign_of
+from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import Unit, scan_unit, starts_unit
 
 NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
@@ -65,7 +66,9 @@ def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[U
         if word.group() in ("x", "y", "z"):
             number = re.search(r"[\d.]*$", text[:at]) or word
             raise ScriptError([replace(found, help=f"write `{number.group()}*{word.group()}` for a product")]) from None
-        sure = (found.help or "").startswith("did you mean") and len(word.group()) > 1
+        near = re.fullmatch(r"did you mean '(\w+)'\?", found.help or "")
+        sure = near is not None and near[1] in UNITS and len(word.group()) > 1 and word.group() not in CONSTANTS
+        sure = sure or re.fullmatch(r"write `[^`]*`", found.help or "") is not None
         both = hint if found.help is None else f"{found.help}; {hint}"
         raise ScriptError([found if sure else replace(found, help=both)]) from None
 

@@ -30,6 +30,7 @@ from sceneql.quantities.spaced import (
     per_unit,
     ternary,
     two_ends,
+    typed_plainly,
     vector_called,
     without_dots,
 )
@@ -38,6 +39,7 @@ from sceneql.quantities.temperatures import Temperatures
 from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import parse_unit
 
+_WRITTEN = "×·⋅−⁻¹²³⁰"
 COORDINATES = ("x", "y", "z")
 LONGEST, DEEPEST = 10_000, 100
 """Limits on the number of characters of one expression (each node takes at least one), and on the depth of its tree."""
@@ -255,6 +257,8 @@ class _Parser:
                 plain := from_latex(self.text)
             ):
                 help = f"write `{plain}`"
+            if self.token in _WRITTEN and (plain := typed_plainly(self.text)) is not None:
+                help = f"write `{plain}`"
             if self.token == "?" and (chosen := ternary(self.text)) is not None:
                 help = f"write `{chosen}`"
             if self.token in "|%@":
@@ -307,7 +311,8 @@ class _Parser:
         odd = next((c for c in self.text if not c.isascii() and instead("sign", c)), None)
         if odd is not None:
             at = self.text.index(odd)
-            help = instead("sign", odd)
+            plain = typed_plainly(self.text) if odd in _WRITTEN else None
+            help = instead("sign", odd) if plain is None else f"write `{plain}`"
             return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
         if (sides := _crossed(self.text)) is not None:
             help = sides

@@ -11,13 +11,15 @@ from fractions import Fraction
 from math import prod
 
 from sceneql.quantities.dimension import PLAIN, TIME, Dimension, common
-from sceneql.quantities.expression import Call, Expr, Number, Shape, Type
+from sceneql.quantities.expression import Call, Expr, Number, Shape, Symbol, Type
 from sceneql.quantities.units import describe, format_quantity, unit_of
 
 Args = tuple[Expr, ...]
 Rule = Callable[[Args], Type]
 LARGEST_POWER = 100
 TURNS = ("sin", "cos", "tan")
+FEWEST_DEGREES = 15.0
+"""A bare number that is a multiple of it is most likely meant in degrees."""
 """Functions of an angle."""
 MOST_AXES, MOST_NUMBERS = 6, 1_000_000
 """Limits on lists in an expression: with defines that hold one another twice, lists would double with each line."""
@@ -101,21 +103,35 @@ def _plain(args: Args, indices: tuple[int, ...], name: str) -> None:
         if dimension is not None and not dimension.plain:
             message = f"{name} needs a plain number, not {describe(dimension)}"
             help = "divide it by a quantity of its kind first"
-            match args[index]:
-                case Call("mul", (Number(bare=True) as number, _)) if (
-                    name in TURNS and dimension == TIME and number.span is not None and _literal(number.span.text)
-                ):
-                    help = f"a speed times the time is an angle: write `{number.value:g} rad/s*time`, in degrees"
-                    help += f" `{number.value:g} deg/s*time`"
-                    raise MismatchError("dimension-mismatch", message, index, None, help)
+            if name in TURNS and dimension == TIME and (rate := _rate(args[index])) is not None:
+                help = "a speed times the time is an angle"
+                raise MismatchError("dimension-mismatch", message, index, None, help, (index, f"{rate}/s*time"))
             raise MismatchError(
                 "dimension-mismatch", message, index, None, help, (index, f"{{}}/(1 {unit_of(dimension)})")
             )
 
 
-def _literal(text: str) -> bool:
-    """Whether a text is a number alone, and no product that was folded to one."""
-    return text.replace(".", "", 1).isdecimal()
+def _rate(angle: Expr) -> str | None:
+    """The angle a second that is meant by ``time``, ``2*time`` or ``time/2``, as ``2 rad``; None for others."""
+    match angle:
+        case Symbol():
+            rate = 1.0
+        case Call("neg", (Symbol(),)):
+            rate = -1.0
+        case Call("mul", (Number(bare=True) as number, Symbol())) if _literal(number):
+            rate = number.value
+        case Call("mul", (Symbol(), Number(bare=True) as number)) if _literal(number):
+            rate = number.value
+        case Call("div", (Symbol(), Number(bare=True) as number)) if _literal(number) and number.value:
+            rate = 1.0 / number.value
+        case _:
+            return None
+    return f"{rate:.6g} {'deg' if rate and rate % FEWEST_DEGREES == 0 else 'rad'}"
+
+
+def _literal(number: Number) -> bool:
+    """Whether a number stands there by itself, and is no name, and no product that was folded to one."""
+    return number.span is not None and number.span.text.replace(".", "", 1).isdecimal()
 
 
 def alike(sentence: str, *, result_plain: bool = False) -> Rule:

@@ -27,6 +27,7 @@ _CALLED = re.compile(
 )
 _CHOICE = re.compile(r"([^?:]+)\?([^?:]+):([^?:]+)")
 _IF_ELSE = re.compile(r"(.+?)\s+if\s+(.+?)\s+else\s+(.+)")
+_RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _TERM = r"(\d[\d.]*\s+[a-zA-Z]+(?![\w(])|[\w.]+|\([^()]*\))"
 _REST, _QUOTIENT = re.compile(rf"{_TERM}\s*%\s*{_TERM}"), re.compile(rf"{_TERM}\s*//\s*{_TERM}")
 _PER = re.compile(r"\s+per\s+(sec(?:ond)?s?|s|min(?:ute)?s?|hours?|h|m|meters?|metres?)\b")
@@ -172,6 +173,13 @@ def ternary(text: str) -> str | None:
         return f"where({found[1].strip()}, {found[2].strip()}, {found[3].strip()})"
     found = _IF_ELSE.fullmatch(text.strip())
     return None if found is None else f"where({found[2].strip()}, {found[1].strip()}, {found[3].strip()})"
+
+
+def typed_plainly(text: str) -> str | None:
+    """A text with signs of print as a keyboard has them, ``m*s^-1`` for ``m·s⁻¹``; None where others are left."""
+    raised = re.sub(r"[⁻¹²³⁰⁴-⁹]+", lambda one: "^" + one[0].translate(_RAISED), text.strip())
+    plain = re.sub(r"\s*[×·⋅]\s*", "*", raised).replace("−", "-")
+    return plain if plain.isascii() else None
 
 
 def modulo(text: str) -> str | None:

@@ -75,6 +75,8 @@ class Instant:
     """The runs of variants shown in panels beside this one, which share one framing."""
     room: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     """Margins covered by overlays at the picture's left, top, right and bottom, as parts of width and height."""
+    rooms: tuple[tuple[float, tuple[float, float, float, float]], ...] = ()
+    """The margins that are needed at some instants [s] of the film; without any they are always ``room``."""
     shown: tuple[Drawn, ...] | None = None
     """The shapes of the picture in the making; None before they are known."""
     _states: dict[str, ModelState] = field(default_factory=dict)

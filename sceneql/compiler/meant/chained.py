@@ -17,12 +17,15 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler.annotations import marks_of, quantities
 from sceneql.compiler.meant import quantity_help as helped
+from sceneql.compiler.meant.by_size import by_own_size
 from sceneql.compiler.meant.values_elsewhere import along_default, elsewhere, first_of, middle_of_ends
 from sceneql.compiler.names import Names
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.compose import compose_node
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, same_as
+from sceneql.quantities.literal import vector_meant
+from sceneql.quantities.spaced import per_unit
 from sceneql.quantities.span import Source
 from sceneql.quantities.units import format_quantity
 
@@ -42,6 +45,8 @@ AXES = {
     for axis in "xyz"
 }
 """Directions by the names of axes."""
+THREE = 3
+"""Rows of a matrix in space."""
 PLANAR = "is a vector of 3, not a vector of 2"
 """What is told of a vector without one of its components."""
 SINGLE = " is a single value, not a vector"
@@ -70,6 +75,7 @@ def better_alone(
     node, found = written[name], reader.found.found
     info = field_of(cls, name)
     helped.by_own_density(reader, written, before)
+    by_own_size(reader, written, cls, name, before)
     told = [(one.code, one.help) for one in found[before:]]
     if len(told) != 1:
         return
@@ -91,6 +97,10 @@ def better_alone(
             found[before] = replace(
                 found[before], help=f"it is a time: at {rate} frames a second write `{name}: {time}`"
             )
+    counted = re.fullmatch(r"([\d.]+(?:e[-+]?\d+)?)\s*[a-z]+\s*(?:/\s*|per )(\w+)", node.span.text.strip())
+    if code == "unknown-unit" and counted is not None and "is counted has no unit" in (help or ""):
+        unit = (per_unit(f"1 per {counted[2]}") or f"1/{counted[2]}")[2:]
+        found[before] = replace(found[before], help=f"what is counted has no unit: write `{counted[1]} /{unit}`")
     single = [mark.shape == () for mark in quantities(info)]
     if (help or "").startswith("two ends stand") and single and all(single):
         fields = [kinds.written_name(key) for key in cls.model_fields]
@@ -105,10 +115,13 @@ def better_alone(
     if better is None and shaped:
         better = helped.other_output(reader, node, info, name)
     better = better or helped.for_each(reader, node, cls, name, title)
+    if better is None and (diagonal := _diagonal(node)) is not None:
+        better = f"it has the three on the diagonal: write `{name}: {diagonal}`"
     if better is None and found[before].message.endswith(PLANAR):
         better = "a number is missing: it has one for each of x, y and z"
     if better is None and found[before].message.startswith(f"{name}{SINGLE}"):
-        better = first_of(name, node)
+        fields = [kinds.written_name(key) for key in cls.model_fields]
+        better = (middle_of_ends(name, node, fields) if "variation" in fields else None) or first_of(name, node)
     if better is None and pointing and not shaped:
         better = helped.direction_alone(node)
     if better is None and not shaped:
@@ -123,6 +136,15 @@ def _one_for_all(node: Node, info: Any, name: str, title: str) -> str | None:
         return None
     more = f"; `sceneql words {title}` tells what goes by place" if title.isidentifier() else ""
     return f"it is one value, the same at all places, as `{name}: {format_quantity(1.0, marks[0].dimension)}`{more}"
+
+
+def _diagonal(node: Node) -> str | None:
+    """The numbers on the diagonal of a matrix of three rows; None of other values."""
+    rows = node.items if isinstance(node, Sequence) else []
+    cells = [row.items for row in rows if isinstance(row, Sequence)]
+    if len(rows) != THREE or [len(row) for row in cells] != [THREE] * THREE:
+        return None
+    return vector_meant(", ".join(row[k].span.text for k, row in enumerate(cells)))
 
 
 def _swept(reader: Any, written: Naming[str, Node], what: str) -> str | None:
@@ -189,7 +211,7 @@ def _candidates(text: str, errors: list[Diagnostic], name: str) -> Iterator[str]
         either = one.code == "unit-needed" or ", in degrees" in (one.help or "")
         if meant is None or one.span is None or (shown and shown != [meant[1]] and not either):
             return
-        told.append((one.span.start, one.span.end, meant[1]))
+        told.append((*_shown_from(text, one.span.start, one.span.end, meant[1]), meant[1]))
     of_field = [meant.removeprefix(f"{name}: ") for _, _, meant in told if meant.startswith(f"{name}: ")]
     if not of_field:
         yield _replaced(text, told)
@@ -197,6 +219,14 @@ def _candidates(text: str, errors: list[Diagnostic], name: str) -> Iterator[str]
             node = compose_node(Source("value", text))
             yield _replaced(text, [(*_around(node, start, end), meant) for start, end, meant in told])
     yield (of_field or [meant for _, _, meant in told])[0]
+
+
+def _shown_from(text: str, start: int, end: int, meant: str) -> tuple[int, int]:
+    """Start and end of what a help shows anew: with a call that stands around the wrong piece, as ``cos(time)``."""
+    call = re.search(r"\w+\($", text[:start])
+    if call is not None and meant.startswith(call[0]) and meant.endswith(")") and text[end : end + 1] == ")":
+        return call.start(), end + 1
+    return start, end
 
 
 def _replaced(text: str, told: Collection[tuple[int, int, str]]) -> str:
@@ -254,7 +284,7 @@ def _errors(reader: Any, text: str, cls: type[BaseModel], name: str) -> list[Dia
             trial.field(node, field_of(cls, name), name)
     except Unreadable:
         better_alone(trial, {name: node}, cls, name, "", 0)
-        return [*nothing.errors] or [Diagnostic("unread", "", None)]
+        return [*nothing.errors] or [Diagnostic("syntax", "", None)]
     except ScriptError as error:
         return [*error.diagnostics]
     return [*nothing.errors]

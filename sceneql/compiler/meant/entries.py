@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 
 from pydantic import BaseModel
 
@@ -12,6 +13,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.meant.unknown import word_having
 from sceneql.kinds import written_name
 from sceneql.language.script import Script
+from sceneql.language.sections import empty
 from sceneql.language.tree import Mapping, Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics, same_as
 from sceneql.quantities.units import unit_of
@@ -33,6 +35,10 @@ def improve_entries(script: Script, catalogue: Catalogue, found: Diagnostics) ->
         k = told.get(at)
         if k is None or not any(one in (found.found[k].help or "") for one in UNTOLD):
             continue
+        help = _indented(script, family, name, catalogue)
+        if help is not None:
+            found.found[k] = replace(found.found[k], help=help)
+            continue
         help = word_having(node, family, catalogue) if isinstance(node, Mapping) and several else None
         if help is not None and name.isidentifier():
             own = "main" if catalogue.load(family, name) is not None else name
@@ -40,6 +46,16 @@ def improve_entries(script: Script, catalogue: Catalogue, found: Diagnostics) ->
         if isinstance(node, Scalar) and node.kind in ("number", "integer"):
             help = _field_alone(script, catalogue, family, name, node)
         found.found[k] = replace(found.found[k], help=help or found.found[k].help)
+
+
+def _indented(script: Script, family: str, name: str, catalogue: Catalogue) -> str | None:
+    """The help for an empty entry, and for the one behind it, called like a word, that belongs to it."""
+    section = script.root.entries.get(family)
+    entries = section.entries if isinstance(section, Mapping) else {}
+    for first, second in pairwise(entries):
+        if name in (first, second) and empty(entries[first]) and catalogue.load(family, second) is not None:
+            return f"what belongs to `{first}` is indented below it: write two spaces more before `{second}:`"
+    return None
 
 
 def _entries(script: Script, catalogue: Catalogue) -> Iterator[tuple[str, str, Node]]:

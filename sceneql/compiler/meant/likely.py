@@ -19,6 +19,7 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler import paint
 from sceneql.compiler.annotations import example_of, first_field, is_fixed, marks_of, quantities, unwrap
+from sceneql.compiler.meant.by_record import by_record
 from sceneql.compiler.meant.chained import mended
 from sceneql.compiler.meant.own_examples import own_example
 from sceneql.compiler.meant.quantity_help import NAME, TRUE, other_output
@@ -61,9 +62,11 @@ def renamed(reader: Any, cls: type[BaseModel], name: str, node: Node) -> tuple[b
     """Whether a field of a record takes a value, and the help that offers the field in place of the one written."""
     info = next(info for key, info in cls.model_fields.items() if kinds.written_name(key) == name)
     node = node.items[0] if isinstance(node, Sequence) and list(map(type, node.items)) == [Sequence] else node
-    wrong, text = _wrong(reader, node, info, name), node.span.text
+    wrong, text = wrong_as(reader, node, info, name), node.span.text
     fits = wrong is None
-    if fits and "\n" not in text and len(text) <= SHOWN:
+    named = node.text if isinstance(node, Scalar) and wrong == () else ""
+    lost = "." in named and reader.names.part_of(named)[0] in reader.names.parts  # it is reported there
+    if (fits or lost) and "\n" not in text and len(text) <= SHOWN:
         return True, f"did you mean `{name}: {text}`?"
     helps = [one.help for one in wrong or () if one.help is not None and _of_its_kind(one)]
     if helps and (found := mended(reader, node, cls, name)) is not None:
@@ -80,7 +83,7 @@ def _of_its_kind(wrong: Diagnostic) -> bool:
     return wrong.code in OF_FORM or (wrong.code == "unknown-name" and "is a part" in wrong.message)
 
 
-def _wrong(reader: Any, node: Node, info: Any, name: str) -> tuple[Diagnostic, ...] | None:
+def wrong_as(reader: Any, node: Node, info: Any, name: str) -> tuple[Diagnostic, ...] | None:
     """The errors of a value as that of a field of any type; None where the field takes it."""
     nothing = Diagnostics()
     names = replace(reader.names, found=nothing)
@@ -104,6 +107,7 @@ def asked(reader: Any, cls: type[BaseModel]) -> dict[str, Any]:
         "catalogue": reader.names.catalogue,
         "table": table_of(cls),
         "inside": partial(inside, reader, cls),
+        "whole": partial(by_record, reader, cls),
     }
 
 
@@ -126,7 +130,7 @@ def meant(reader: Any, cls: type[BaseModel], node: MappingNode) -> set[str | Non
     for name in unknown:
         told = together(name, unknown, node, known) or ""
         found |= {meant_field(name, known), taking_word(reader, cls, name)}
-        found |= {one for one in known if f"`{one}: " in told}
+        found |= {one for one in known if f"`{one}: " in told or f", {one}: " in told}
         if issubclass(cls, kinds.Record) and cls.meant_by(node.entries[name].span.text) is not None:
             found.add(known[0])
     return found
@@ -149,7 +153,7 @@ def inside(
             before = f"{own[0]}: {value.span.text}, " if isinstance(value, Scalar) and len(own) == 1 else "..., "
             return f"it stands inside `{key}`: write `{key}: {{{before}{name}: {text}}}`"
     if written is not None:
-        return None
+        return _of_contact(reader, cls, name, text)
     plain = node.text if isinstance(node, Scalar) else ""
     if issubclass(cls, kinds.Record) and (told := cls.meant_by(plain)) is not None:
         return told
@@ -163,11 +167,11 @@ def inside(
             if _is_record(arm) and (taken := _known(arm, name)) is not None:
                 field = kinds.written_name(key)
                 told = f"it stands inside `{field}`: write `{field}: {{{name}: {text}}}`"
-                found.append((_wrong(reader, node, taken, name) is not None, told))
+                found.append((wrong_as(reader, node, taken, name) is not None, told))
     outer: type[BaseModel] | None = reader.outer
     if outer is not None and (taken := _known(outer, name)) is not None:
         told = f"it stands outside of these braces: write `{{..., {name}: {text}}}` around them"
-        found.append((_wrong(reader, node, taken, name) is not None, told))
+        found.append((wrong_as(reader, node, taken, name) is not None, told))
     return min(found, key=lambda one: one[0])[1] if found else None
 
 
@@ -186,6 +190,19 @@ def _for_each(reader: Any, name: str) -> str | None:
     word = (used or [one for one in words if one == USUAL_FORCE] or words)[0]
     told = f"{{{word}: {{{name}: [{', '.join(each)}]}}}}"
     return f"it is a force's, one for each in their order: write `forces: {{all: {told}}}`"
+
+
+def _of_contact(reader: Any, cls: type[BaseModel], name: str, text: str) -> str | None:
+    """The help for a field of a contact that the script has, in another part: ``restitution`` of a body."""
+    having = [] if reader.names.catalogue is None else reader.names.catalogue.having(name)
+    words = [word for family, word in having if family == "contacts"]
+    for part, entry in reader.names.parts.items():
+        if entry.word in words and issubclass(cls, kinds.Kind) and cls.family in ("models", "objects"):
+            inner = "" if entry.fields is None else "..., "
+            own = f"{part}: " if part != entry.word else ""
+            told = f"{own}{{{entry.word}: {{{inner}{name}: {text}}}}}"
+            return f"'{part}' has it, the contact of the script: write `{told}` there"
+    return None
 
 
 def _is_record(arm: Any) -> bool:

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from math import tau
 from typing import Any
@@ -22,6 +22,7 @@ from sceneql.language.tree import Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.dimension import ANGLE, DENSITY, MASS, PLAIN, Dimension
 from sceneql.quantities.expression import Expr, Number, Vector
+from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import format_quantity, unit_of
 
 NAME = r"[^\W\d][\w.]*"
@@ -82,6 +83,8 @@ def number_meant(node: Node, info: Any, name: str, code: str, help: str | None) 
     """The help for a word in place of a number, ``tolerance: high``, or behind one without a unit, ``10 lines``."""
     extra: Any = info.json_schema_extra or {}
     default, marks = extra.get("default"), quantities(info)
+    if code == "unknown-unit" and (joined := _of_two_units(node, marks)) is not None:
+        return f"two units have a sign between them: write `{name}: {joined}`"
     if code == "unknown-unit":
         number = re.fullmatch(r"([-+.\d]+(?:[eE][-+]?\d+)?)\s*[^\W\d]\w*", node.span.text)
         known = [mark.dimension for mark in marks if mark.dimension is not None]
@@ -97,6 +100,19 @@ def number_meant(node: Node, info: Any, name: str, code: str, help: str | None) 
     if not word or not marks or not isinstance(default, str) or not default[:1].isdigit():
         return None
     return f"write a number, as `{name}: {default}`, or a name that stands under `define`"
+
+
+def _of_two_units(node: Node, marks: Collection[kinds.Quantity]) -> str | None:
+    """A number with two units without a sign between them, as the field has them: ``40 N/m`` or ``40 N*m``."""
+    found = re.fullmatch(r"([-+.\d]+(?:[eE][-+]?\d+)?)\s*([^\W\d_]{2,4})", node.span.text)
+    wanted = [mark.dimension for mark in marks if mark.dimension is not None]
+    for k in range(1, len(found[2]) if found is not None else 0):
+        first, second = (found[2][:k], found[2][k:]) if found is not None else ("", "")
+        if found is not None and first in UNITS and second in UNITS:
+            for sign, whole in (("*", UNITS[first][1] * UNITS[second][1]), ("/", UNITS[first][1] / UNITS[second][1])):
+                if whole in wanted:
+                    return f"{found[1]} {first}{sign}{second}"
+    return None
 
 
 def plain_define(reader: Any, node: Node) -> str | None:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection
 from collections.abc import Sequence as Sequenced
 
-from sceneql.language.tree import Mapping, Node, Scalar
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import same_as
 from sceneql.quantities.literal import vector_meant
 
@@ -26,6 +26,10 @@ FEWEST = 2
 """Least number of members of what is made of several."""
 BEGINS, ENDS = ("start", "from", "begin", "t0", "after"), ("end", "to", "until", "stop", "t1", "before")
 """Fields of other programs for the times between which something is to be seen."""
+DRAGS, AIR = ("cd", "c_d", "cw", "drag_coefficient", "coefficient"), "1.2 kg/m^3"
+"""Fields of other programs for a drag coefficient, and the density of air."""
+KEYED = ("curve", "cycle", "delay", "then")
+"""Fields of keyframes."""
 SLOW = ("slowmo", "slowmotion", "slowdown", "slow")
 STRENGTHS = ("value", "strength", "magnitude", "torque", "force", "size", "amount", "moment")
 WAYS = ("axis", "direction", "about", "dir")
@@ -48,6 +52,7 @@ def together(name: str, unknown: Sequenced[str], node: Mapping, known: Collectio
     told = told or _corners(name, unknown, node, known) or _members(name, unknown, node, known)
     told = told or _states(name, unknown, node, known) or _slower(name, node, known)
     told = told or _along(name, unknown, node, known) or _shown(name, unknown, node, known)
+    told = told or _of_keys(name, node) or _drag(name, unknown, node, known) or _two_places(name, node, known)
     if told is not None:
         return told
     ours = same_as(name, known)
@@ -209,3 +214,34 @@ def _shown(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[
     if after is None and before is None:
         return "it is there from the start: leave it out"
     return f"from when to when it is there is said by `show`: write `show: {'*'.join(filter(None, (after, before)))}`"
+
+
+def _drag(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for a drag coefficient and an area: with the density of air, or the one that is written."""
+    lower = {one.lower(): one for one in unknown}
+    factor = next((node.entries[lower[one]].span.text for one in DRAGS if one in lower), None)
+    if "quadratic" not in known or "quadratic" in node.entries or factor is None or "area" not in lower:
+        return None
+    if name.lower() not in (*DRAGS, "area", "density", "rho"):
+        return None
+    dense = next((node.entries[lower[one]].span.text for one in ("density", "rho") if one in lower), AIR)
+    return f"write `quadratic: 0.5*{dense}*{factor}*{node.entries[lower['area']].span.text}`"
+
+
+def _two_places(name: str, node: Mapping, known: Collection[str]) -> str | None:
+    """The help for two names in a list where there are two places: those of the named."""
+    value = node.entries[name]
+    texts = [item.span.text for item in value.items] if isinstance(value, Sequence) else []
+    if not {"from", "to", "rest"} <= {*known} or len(texts) != FEWEST or {"from", "to"} & node.entries.keys():
+        return None
+    first, second = (f"{text}.position" if text.replace(".", "_").isidentifier() else text for text in texts)
+    return f"write `from: {first}, to: {second}`"
+
+
+def _of_keys(name: str, node: Mapping) -> str | None:
+    """The help for a field of keyframes that stands beside them."""
+    keyed = next((key for key, one in node.entries.items() if isinstance(one, Mapping) and "keys" in one.entries), None)
+    if name not in KEYED or keyed is None:
+        return None
+    told = f"{keyed}: {{keys: {{...}}, {name}: {node.entries[name].span.text}}}"
+    return f"it stands beside `keys`, in the same braces: write `{told}`"

@@ -6,23 +6,23 @@ import re
 from collections.abc import Callable, Collection
 from collections.abc import Mapping as Naming
 from collections.abc import Sequence as Sequenced
+from itertools import pairwise
 from typing import Any
 
 from pydantic import BaseModel
 
 from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.compiler.css_colors import NAMED
 from sceneql.compiler.meant.together import filled, together
-from sceneql.compiler.names import Names, Vocabulary
+from sceneql.compiler.names import Vocabulary
 from sceneql.compiler.vector_fields import ENDS
-from sceneql.kinds import Refers, written_name
-from sceneql.language.repeat import copy_meant
+from sceneql.kinds import written_name
 from sceneql.language.replaced import word_of
 from sceneql.language.scope import Entry
 from sceneql.language.script import Script
-from sceneql.language.tree import Mapping, Node, Scalar, Sequence
-from sceneql.quantities.diagnostic import STRONG, Diagnostics, ScriptError, all_same_as, nearest, same_as, suggestion
+from sceneql.language.sections import empty
+from sceneql.language.tree import Mapping, Node, Scalar
+from sceneql.quantities.diagnostic import STRONG, Diagnostics, ScriptError, all_same_as, nearest, same_as
 from sceneql.quantities.expression import Number, Vector
 from sceneql.quantities.instead import instead
 from sceneql.quantities.literal import vector_meant
@@ -60,19 +60,22 @@ def report_unknown(
     catalogue: Vocabulary | None = None,
     table: str = "",
     inside: Callable[..., str | None] = lambda name, value, written=None: None,
+    whole: Callable[[str, Mapping], str | None] = lambda name, node: None,
 ) -> bool:
     """Report the fields of a mapping that are not among the known ones; returns whether there are none.
 
     ``said_by``: help texts for names that are likely to be tried; ``family``: that of the word, if any;
     ``renamed``: offers a known field; ``catalogue``: to look for names among all words and their fields;
     ``table``: the field, if it has to be given, that holds entries by names of the script; ``inside``: the help for
-    a name and a value that stand one level further in.
+    a name and a value that stand one level further in; ``whole``: that for a name by all that stands beside it.
     """
     offer = renamed or (lambda field, value: (True, f"did you mean '{field}'?"))
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
         help = together(name, unknown, node, known)
-        help = help or (said_by or {}).get(name) or instead(f"field.{title.partition('.')[0]}", name)
+        help = (
+            help or (said_by or {}).get(name) or whole(name, node) or instead(f"field.{title.partition('.')[0]}", name)
+        )
         help = help and filled(help, node.entries[name], known)
         if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
             space = ", with a space behind the colon" if written[2] else ""
@@ -182,7 +185,7 @@ def word_meant(
     if isinstance(fields, Scalar) and entry.name == entry.word and catalogue.load(family, fields.text) is not None:
         return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.text}}}`"
     if fields is None and family_of.get(entry.word, family) != family:
-        pairs = _having(["between"], family, catalogue)
+        pairs = having_fields(["between"], family, catalogue)
         word = DEFAULT.get(family) if DEFAULT.get(family) in pairs else next(iter(pairs), None)
         if word is not None:
             return f"a part is named within a word, `{{{word}: {{between: [{entry.word}, ...]}}}}`"
@@ -190,32 +193,50 @@ def word_meant(
         return joined
     if (same := same_as(entry.word, words)) is not None:
         return f"did you mean '{same}'?"
-    if family == "materials" and (other := instead(family, entry.word)) is not None:
+    if family in ("materials", "objects") and (other := _instead(entry, family)) is not None:
         return other
+    if "//" in entry.word:
+        return f"a comment begins with `#`: write `{entry.word.replace('//', '#', 1)}`"
+    if (others := catalogue.families_of(entry.word)) and (family, others[0]) == ("models", "objects"):
+        shape = f"objects: {{{entry.name}: {{{entry.word}: {{...}}}}}}"
+        return f"a shape is an object, which a model moves: write `{shape}`, and `{{rigid: {{of: {entry.name}}}}}` here"
     if others := catalogue.families_of(entry.word):
         return f"it belongs under '{others[0]}:'"
-    if fields is None and not entry.word.isidentifier() and (having := _having([entry.name], family, catalogue)):
+    if fields is None and not entry.word.isidentifier() and (having := having_fields([entry.name], family, catalogue)):
         word = DEFAULT.get(family) if DEFAULT.get(family) in having else having[0]
         text = f"main: {{{word}: {{{entry.name}: {entry.word}}}}}"
         return f"a part has a name, and a word around its fields: write `{text}`"
+    table = script.root.entries.get(family)
+    if isinstance(table, Mapping) and catalogue.load(family, entry.name) is not None:
+        before = dict(pairwise(table.entries)).get  # the entry behind each
+        above = next((one for one in table.entries if before(one) == entry.name), None)
+        if above is not None and empty(table.entries[above]):
+            return f"what belongs to `{above}` is indented below it: write two spaces more before `{entry.name}:`"
     if (named := catalogue.load(family, entry.name)) is not None:
         inner = _fields_of(entry, named)
         return f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: {inner}}}`"
-    having = [] if fields is None else _having([entry.word], family, catalogue)
+    if (other := _instead(entry, family)) is not None:
+        return other
+    having = [] if fields is None else having_fields([entry.word], family, catalogue)
     if fields is not None and having:
         usual = next((word for word in DEFAULT.values() if word in having), having[0])
         word = nearest(entry.name, having, STRONG) or usual
         of = f" of {', '.join(sorted(having))}" if len(having) <= MANY else ""
         return f"it is a field{of}: write `{{{word}: {{{entry.word}: {fields.span.text}}}}}`"
-    if (other := instead(family, entry.word)) is not None:
-        return other
     near, given = nearest(entry.word, words), list(fields.entries) if isinstance(fields, Mapping) else []
     cls = None if near is None else catalogue.load(family, near)
     known = [] if cls is None else [written_name(name) for name in cls.model_fields]
     if near is not None and (not given or any(nearest(name, known, STRONG) for name in given)):
         return f"did you mean '{near}'?"
-    having = _having(given, family, catalogue) if given else []
+    having = having_fields(given, family, catalogue) if given else []
     return f"words with such fields are {', '.join(having[:MANY])}" if having else None
+
+
+def _instead(entry: Entry, family: str) -> str | None:
+    """The sentence on a word of other programs, with the entry's own values."""
+    other, place = instead(family, entry.word), entry.span
+    nothing = Mapping({}, {}, True, place.source, place.start, place.end)
+    return None if other is None else filled(other, entry.fields if isinstance(entry.fields, Mapping) else nothing, ())
 
 
 def _joined(text: str, family_of: Collection[str]) -> str | None:
@@ -292,38 +313,17 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
         if isinstance(told, Scalar) and (word := same_as(told.text, catalogue.choices(family))) is not None:
             inner = ", ".join(f"{name}: {value.span.text}" for name, value in node.entries.items() if name != key)
             return f"the word stands around its fields: write `{{{word}: {{{inner}}}}}`"
-    having, text = _having(list(node.entries), family, catalogue), node.span.text
+    having, text = having_fields(list(node.entries), family, catalogue), node.span.text
     if (meant := _told(node, having or catalogue.choices(family), family, catalogue)) is not None:
         return meant
     for name, value in () if having else node.entries.items():
-        having = _having([name], family, catalogue)
+        having = having_fields([name], family, catalogue)
         text = f"{{{name}: {value.span.text}}}"
         if having:
             break
     return (
         f"the word stands around its fields, {', '.join(having)}: write `{{{having[0]}: {text}}}`" if having else None
     )
-
-
-def other_family(name: str, mark: Refers, names: Names, catalogue: Catalogue, family_of: Callable[[str], str]) -> str:
-    """The help for a part of a wrong family: the model that moves it, a word by that name, or parts of the right."""
-    body = _held_by(names.parts[name].fields) if mark.bodies and family_of(name) == "ties" else None
-    if body is not None:
-        return f"a tie is between bodies, not between their ties: write `{body}`"
-    mover = names.mover(name)
-    if mover and mark.family == "models":
-        return f"'{mover}' moves it: write `{mover}`"
-    if (word := same_as(name, catalogue.words(mark.family))) is not None:
-        return f"write `{word}`, a word, or the name of one of {mark.family}"
-    others = [part for part in names.parts if family_of(part) == mark.family]
-    return f"those of {mark.family} are {', '.join(others[:8])}" if others else f"write one under `{mark.family}:`"
-
-
-def _held_by(fields: Node | None) -> str | None:
-    """The first body that a tie holds, but the world."""
-    between = fields.entries.get("between") if isinstance(fields, Mapping) else None
-    bodies = [item.span.text for item in between.items] if isinstance(between, Sequence) else []
-    return next((one for one in bodies if one != "world"), None)
 
 
 def _told(node: Mapping, words: Collection[str], family: str, catalogue: Catalogue) -> str | None:
@@ -348,84 +348,7 @@ def _told(node: Mapping, words: Collection[str], family: str, catalogue: Catalog
     return help
 
 
-def several_meant(node: Sequence, mark: Refers, entry: Entry, catalogue: Catalogue) -> str | None:
-    """The help for a list where an entry refers to one part."""
-    kinds = [catalogue.load(family, entry.word) for family in catalogue.families_of(entry.word)]
-    names = [item.span.text for item in node.items]
-    if len(names) == 1:
-        return f"write `{names[0]}`"
-    if "objects" not in (mark.family, mark.also):
-        return None
-    if any(cls is not None and "bodies" in cls.model_fields for cls in kinds) and all(
-        name.isidentifier() for name in names
-    ):
-        return f"each is a body of its own: write `bodies: {{{', '.join(f'{one}: {{of: {one}}}' for one in names)}}}`"
-    return f"several together are one: write `{{union: {{of: {node.span.text}}}}}`"
-
-
-def warn_of_another(
-    node: Scalar, family: str, user: str, entries: Naming[str, Entry], family_of: Naming[str, str], found: Diagnostics
-) -> None:
-    """Warn of a word in a model, ``user``, that makes another part, where there is a part by that word to be meant."""
-    if family_of.get(user) != "models" or family not in ("objects", "models"):
-        return  # a plain material beside a tinted one is most likely meant
-    same = [name for name, entry in entries.items() if entry.word == node.text and family_of[name] == family]
-    if same and "." not in same[0]:
-        text = f"'{node.text}' is a word here, and makes another one, with its defaults"
-        help = f"to name the one that is there write `{same[0]}`, to make another `{{{node.text}: {{}}}}`"
-        found.warning("second-part", text, node.span, help=help)
-
-
-def beside_world(place: str) -> str:
-    """The help where a tie has a position in place of a body."""
-    plain = " ".join(place.strip("[]").replace(",", " ").split())
-    plain += "" if plain[-1:].isalpha() else " m"
-    return f"write `world`, and the place in another field of the tie, `to: {plain}` of a rod, `at` of others"
-
-
-def part_meant(name: str, mark: Refers, choices: Sequenced[str], names: Names, catalogue: Catalogue) -> str | None:
-    """The help for a name of no part of the mark's families; ``choices``: the names of their parts."""
-    if (copy := copy_meant(name, {*choices, *names.parts})) is not None:
-        return copy
-    if mark.bodies and name[:1] in "-[0123456789":
-        return f"a place is no body: {beside_world(name)}"
-    if "models" in (mark.family, mark.also) and (model := names.model_of(name)):
-        whose = f"'{name}' is one of the bodies or masses of '{model}'"
-        all_of_it = f"{whose}: write `{model}`, which means all of them"
-        return f"{whose}: write `{model}.{name}`" if mark.bodies else all_of_it
-    if mark.bodies:
-        return suggestion(name, choices) or instead("body", name) or "name a body, or what stands still, `world`"
-    if (part := names.part_of(name)[0]) != name and part in choices:
-        return f"a part stands here, and none of its outputs: write `{part}`"
-    having = _having(["color"], mark.family, catalogue) if name in NAMED else []
-    if having:  # gold is metal
-        word = same_as(name, having) or having[0]
-        return f"write `{{{word}: {{color: {name}}}}}`, or `color: {name}` in its place"
-    words = catalogue.words(mark.family)
-    if names.gives(name) and (readers := names.readers(name, choices)):
-        return f"a part stands here, and none of its outputs: write `{readers[0]}`, which shows it"
-    model = names.part_of(name)[0]
-    shown = [one for one in choices if model != name and _names(names.parts[one].fields, model)]
-    if names.gives(name) and shown:
-        return f"a part stands here, and none of its outputs: write `{shown[0]}`, which shows it"
-    row = re.findall(r"[^\W\d]\w*", name)
-    if mark.panel and len(row) > 1 and all(one in choices for one in row):
-        return f"a row is a list: write `[[{', '.join(row)}]]`"
-    hint = instead("part", name) or suggestion(name, choices) or suggestion(name, words)
-    if hint is None and mark.panel:
-        hint = f"rows hold names of cameras and graphs, `[[{', '.join(choices[:2]) or 'front, top'}]]`"
-        hint += "; variants stand side by side by `[{each: variant}]`: `sceneql words layout`"
-    if hint is None and words:
-        hint = f"write the name of one, or a word, `{{{words[0]}: {{...}}}}`; the words are {', '.join(words)}"
-    return hint
-
-
-def _names(fields: Node | None, part: str) -> bool:
-    """Whether the text of an entry's fields has the name of a part."""
-    return fields is not None and re.search(rf"\b{re.escape(part)}\b", fields.span.text) is not None
-
-
-def _having(fields: Collection[str], family: str, catalogue: Catalogue) -> list[str]:
+def having_fields(fields: Collection[str], family: str, catalogue: Catalogue) -> list[str]:
     """The words of a family with all these fields, those with the fewest fields first."""
     found: list[tuple[int, str]] = []
     for word in catalogue.choices(family):

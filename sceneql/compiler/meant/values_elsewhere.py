@@ -15,10 +15,11 @@ from sceneql.compiler.annotations import quantities
 from sceneql.language.tree import Node, Sequence
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.dimension import VELOCITY
+from sceneql.quantities.literal import vector_meant
 from sceneql.quantities.spaced import two_ends
 
-AXES = 3
-"""Components of a vector in space."""
+AXES, PAIR = 3, 2
+"""Components of a vector in space, and ends of a range."""
 
 
 def first_of(name: str, node: Node) -> str | None:
@@ -69,8 +70,11 @@ def along_default(node: Node, info: Any) -> str | None:
 
 def middle_of_ends(name: str, node: Node, fields: Collection[str]) -> str | None:
     """The help for the two ends of a range where a field is one number: the mean, and what lets it vary, if any."""
-    ends = two_ends(node.span.text)
-    if ends is None:
+    text = node.span.text
+    if isinstance(node, Sequence) and len(node.items) == PAIR:
+        text = vector_meant(", ".join(item.span.text for item in node.items)) or ""
+    ends = two_ends(text) or (text if isinstance(node, Sequence) else None)
+    if ends is None or len(ends.split()) < PAIR:
         return None
     low, high, *unit = ends.split()
     mean, half = (float(low) + float(high)) / 2, (float(high) - float(low)) / 2

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 from sceneql.compiler.passes.fillings import Beginning
 from sceneql.compiler.passes.overlaps import UNKNOWN, field_at
+from sceneql.compiler.passes.unseen import level_of
 from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Interaction, Model, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.run.falling import HELP, MOST_OBJECTS, standing
 
-if TYPE_CHECKING:
-    from sceneql.frame import Floats
-
-    Start = tuple[tuple[float, ...], tuple[float, ...], float]
+Start = tuple[tuple[float, ...], tuple[float, ...], float]
 
 INSTANTS = 64
 """Number of instants at which a mass is looked for in a solid."""
@@ -78,14 +76,14 @@ def starts_of(kind: Model, tasks: Mapping[str, Task], start: Any) -> list[Start]
 
 
 def _started(kind: Any, tasks: Mapping[str, Task], start: Any) -> Iterator[Start]:
-    import numpy as np
-
     still = (0.0, 0.0, 0.0)
     bodies = getattr(kind, "bodies", None) or {"": kind}
     driven = {body.of.name: body for body in bodies.values() if getattr(body, "of", None) is not None}
     for name, body in driven.items():
         at, velocity = getattr(body, "position", None), body.velocity or getattr(kind, "velocity", None) or still
         shape = tasks[name].original or tasks[name].kind
+        import numpy as np  # here, where a check needs it
+
         try:
             low, high = cast(Object, shape).extent(np.eye(3, 4), start)
         except UNKNOWN:
@@ -115,17 +113,24 @@ def _first_hit(
 
     Those that they touch are met as soon as they are in reach.
     """
-    import numpy as np
-
-    times = np.linspace(0.0, end, INSTANTS)
+    times = [end * k / (INSTANTS - 1) for k in range(INSTANTS)]
     hits = []
     for place, velocity, reach in starts:
-        way: Floats = np.array(place) + np.multiply.outer(times, velocity) + np.multiply.outer(0.5 * times**2, pull)
+        way = [tuple(p + v * t + 0.5 * g * t * t for p, v, g in zip(place, velocity, pull, strict=True)) for t in times]
         for name, solid in solids.items():
-            try:
-                inside = field_at(solid, way, start) <= (reach if name in touched else 0.0)
-            except UNKNOWN:
-                continue
-            if inside.any() and (name in touched or not inside[0]):
-                hits.append((float(times[inside.argmax()]), name))
+            inside = _inside(solid, way, reach if name in touched else 0.0, start)
+            if any(inside) and (name in touched or not inside[0]):
+                hits.append((times[inside.index(True)], name))
     return None if not hits else (min(hits)[1], min(hits)[0])
+
+
+def _inside(solid: Any, way: Sequence[tuple[float, ...]], reach: float, start: Any) -> list[bool]:
+    """Whether each of some places [m] is in a solid, or within a distance of it; nowhere where that is not known."""
+    if (level := level_of(solid)) is not None:
+        return [y <= level + reach for _, y, _ in way]
+    import numpy as np  # here, where a check needs it
+
+    try:
+        return [bool(one <= reach) for one in field_at(solid, np.array(way), start)]
+    except UNKNOWN:
+        return [False] * len(way)

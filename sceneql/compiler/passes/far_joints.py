@@ -74,12 +74,17 @@ def warn_of_unturned(tasks: Mapping[str, Task], groups: Sequence[Island], found:
         if len(ties) != 1 or len(island.models) != 1 or island.contacts or pull is None:
             continue
         tie, model = tasks[ties[0]], tasks[island.models[0]]
+        places = [place for place, _, _ in starts_of(cast(Model, model.kind), tasks, start)]
+        if len(places) == 1 and not starts_moving(model.kind) and _hangs(tie.kind, places[0], pull):
+            text = f"'{model.name}' hangs straight down at rest: nothing moves"
+            help = "let it start aside, by another `position`, or give it a `velocity`"
+            found.warning("nothing-moves", text, tie.span, help=help)
+            continue
         axis, at = getattr(tie.kind, "axis", None), getattr(tie.kind, "at", None)
         if not isinstance(axis, Value) or not isinstance(at, Value) or not axis.constant or not at.constant:
             continue
         if any(getattr(tie.kind, field, None) is not None for field in TURNING) or starts_moving(model.kind):
             continue
-        places = [place for place, _, _ in starts_of(cast(Model, model.kind), tasks, start)]
         if len(places) != 1:
             continue
         arm = tuple(c - float(p) for c, p in zip(places[0], at.number(), strict=True))
@@ -92,6 +97,17 @@ def warn_of_unturned(tasks: Mapping[str, Task], groups: Sequence[Island], found:
             seen = ", for a swing in the picture" if better == AXES[0] else ""
             help = f"write `axis: {' '.join(map(str, better))}`{seen}"
         found.warning("nothing-moves", text, axis.span or tie.span, help=help)
+
+
+def _hangs(tie: Any, place: Sequence[float], pull: Sequence[float]) -> bool:
+    """Whether a rod holds a body straight below a fixed point of the world."""
+    ends = [getattr(tie, name, None) for name in ("from_", "to")]
+    fixed = [end for end, ref in zip(ends, tie.between, strict=True) if not ref.name]
+    if len(fixed) != 1 or not isinstance(fixed[0], Value) or not fixed[0].constant:
+        return False
+    arm = [c - float(p) for c, p in zip(place, fixed[0].number(), strict=True)]
+    along = sum(a * b for a, b in zip(arm, pull, strict=True))
+    return along > (1.0 - STILL) * hypot(*arm) * hypot(*pull) > 0.0
 
 
 def _turning(arm: Sequence[float], pull: Sequence[float], axis: Sequence[float]) -> float:

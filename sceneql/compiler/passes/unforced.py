@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 from math import dist
 from typing import Any, cast
 
@@ -14,7 +15,8 @@ from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Formula, Interaction, Kind, Model, Object, Tie, Value
 from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities.diagnostic import Diagnostics
-from sceneql.quantities.expression import Number
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Expr, Number
 
 UNSEEN = 0.01
 """Angle [rad] by which masses turn about each other, below which nobody sees their pull."""
@@ -24,6 +26,10 @@ SEEN = 0.2
 """Part of a cell that a field has to spread by for the change to be seen."""
 ALIKE = 0.2
 """Relative difference of the constant of a circle from the one that is there, up to which this one was meant."""
+CHANGING = ("source", "drift", "boundary", "velocity", "rate", "species")
+"""Fields by which a field that is even at the start changes."""
+FINE = 16
+"""Number of places along each side of a box at which its start is looked at."""
 STARTS = ("velocity", "spin")
 """Fields that let masses or bodies move at the start."""
 
@@ -58,6 +64,41 @@ def warn_of_unforced(tasks: Mapping[str, Task], groups: Sequence[Island], found:
             if some:
                 help = f"name it, too, where a force is `on: [{some[0]}]`: `on: [{some[0]}, {models[0].name}]`"
             found.warning("nothing-moves", text, models[0].span, help=help)
+
+
+def warn_of_even(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Warn of fields in a box whose formula for the start is one number at all places, where nothing comes in."""
+    for task in tasks.values():
+        kind: Any = task.kind
+        initial, size = getattr(kind, "initial", None), getattr(kind, "size", None)
+        if not isinstance(kind, Model) or not isinstance(initial, Formula) or not size or kind.flows:
+            continue
+        if isinstance(initial.expr, Number) or any(getattr(kind, field, None) for field in CHANGING):
+            continue
+        corner = getattr(kind, "corner", None) or (0.0,) * len(size)
+        values = set(_sampled(initial.expr, corner, size))
+        if len(values) == 1:
+            ends = ", ".join(f"{a} from {c:g} to {c + s:g}" for a, c, s in zip("xyz", corner, size, strict=False))
+            text = f"'{task.name}' is {values.pop():g} at all places at the start, and nothing comes in: it stays so"
+            help = f"in its box goes {ends}: let the formula differ there"
+            found.warning("nothing-moves", text, initial.span or task.span, help=help)
+
+
+def _sampled(expr: Expr, corner: Sequence[float], size: Sequence[float]) -> Iterator[float]:
+    """A formula's values at places of a box, on a lattice; none where it reads more than the place."""
+    known = {"x": 0.0, "y": 0.0, "z": 0.0, "t": 0.0}
+
+    def look_up(node: Any) -> float:
+        return known[node.name]
+
+    steps = [[c + s * (k + 0.5) / FINE for k in range(FINE)] for c, s in zip(corner, size, strict=True)]
+    for place in product(*steps):
+        known |= zip("xyz", place, strict=False)
+        try:
+            yield float(evaluate(expr, look_up))
+        except (AttributeError, KeyError, TypeError, ValueError, ArithmeticError):
+            yield from (0.0, 1.0)  # it is not known
+            return
 
 
 def warn_of_weak(tasks: Mapping[str, Task], groups: Sequence[Island], end: float, found: Diagnostics) -> None:

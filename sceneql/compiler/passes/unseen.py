@@ -73,11 +73,18 @@ def ground_level(tasks: Mapping[str, Task]) -> float | None:
             continue
         if kind.material is not None and getattr(tasks[kind.material.name].kind, "clear", False):
             continue
-        height, up = getattr(kind, "height", None), _place(getattr(kind, "normal", None)) or (0.0, 1.0, 0.0)
-        base = _place(getattr(kind, "position", None)) or (0.0, 0.0, 0.0)
-        if isinstance(height, Value) and height.constant and up[0] == up[2] == 0 < up[1]:
-            return base[1] + float(height.number())
+        if (level := level_of(kind)) is not None:
+            return level
     return None
+
+
+def level_of(kind: Kind) -> float | None:
+    """The height [m] of an endless level ground that stands still; None of other objects."""
+    height, up = getattr(kind, "height", None), _place(getattr(kind, "normal", None)) or (0.0, 1.0, 0.0)
+    base = _place(getattr(kind, "position", None)) or (0.0, 0.0, 0.0)
+    if not isinstance(height, Value) or not height.constant or not getattr(kind, "grounds", False):
+        return None
+    return base[1] + float(height.number()) if up[0] == up[2] == 0 < up[1] else None
 
 
 def _behind(task: Task, camera: Task) -> bool:

@@ -72,3 +72,20 @@ def _along_z(value: object) -> bool:
     x, y, z = (float(one) for one in value.number())
     length = (x * x + y * y + z * z) ** 0.5
     return bool(abs(z) > MOSTLY * length > 0)
+
+
+def warn_of_rising(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Warn of the only weight of a script where it points upwards, along y."""
+    weights = [task for task in tasks.values() if isinstance(task.kind, Interaction) and task.kind.weighs]
+    for task in weights if len(weights) == 1 else ():
+        for field in ("acceleration", "direction"):
+            value = getattr(task.kind, field, None)
+            if isinstance(value, Value) and value.constant:
+                x, y, z = (float(one) for one in value.number())
+                if y > MOSTLY * (x * x + y * y + z * z) ** 0.5 > 0:
+                    help = "what pulls down points along -y: write `0 -1 0`, or leave it out"
+                    help = (
+                        help if field == "direction" else f"what pulls down points along -y: write `0 {-y:g} 0 m/s^2`"
+                    )
+                    text = f"'{task.name}' pulls upwards: all that weighs rises"
+                    found.warning("rises", text, value.span or task.span, help=help)

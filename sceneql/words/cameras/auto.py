@@ -73,12 +73,16 @@ class Auto(Camera):
         slopes, middle = framing.inner(half, size, self.margin, moment.room, HEADROOM)
         axes = framing.axes_towards(_raised(_towards(points, slopes, moment.boxes()), middle[1]))
         origin, distance = framing.fitted(points, axes, slopes, middle=middle)
-        fit = partial(framing.fitted, axes=axes, slopes=slopes, middle=middle)
+
+        def fit(points: Floats, span: tuple[float, float]) -> tuple[Floats, float]:
+            slopes, middle = framing.inner(half, size, self.margin, framing.room_within(moment, span), HEADROOM)
+            return framing.fitted(points, axes, slopes, middle=middle)
+
         lost = moment.left_out()
         if len(lost) > 0:  # it goes back as far as it must, and shows what the others show
             back = moment.kept(
                 "a camera that goes back",
-                (size, moment.room, points.tobytes(), lost.tobytes()),
+                (size, moment.room, moment.rooms, points.tobytes(), lost.tobytes()),
                 lambda: Follower(lost, points, fit, axes[2], WINDOW * moment.end),
             )
             return framing.view(back.at(moment.time), axes, size, half)
@@ -90,19 +94,17 @@ class Auto(Camera):
         if not alone:
             rows, standing = with_feet(rows, float(points[:, 1].min())), moment.standing()
 
-        def follower(slopes: tuple[float, float], middle: tuple[float, float], least: float) -> Follower:
-            fit = partial(framing.fitted, axes=axes, slopes=slopes, middle=middle)
-            return Follower(rows, standing, fit, axes[2], window, least)
-
         def following() -> tuple[Follower | None]:
             if not alone:
                 plain, _ = framing.inner(half, size, self.margin, NO_ROOM, HEADROOM)  # overlays ask whether it pays
-                still, far = framing.fitted(points, axes, plain)
-                if not follower(plain, (0.0, 0.0), far / NEARER).pays(still):
+                bare = partial(framing.fitted, axes=axes, slopes=plain)
+                still, far = bare(points)
+                free = Follower(rows, standing, lambda seen, span: bare(seen), axes[2], window, far / NEARER)
+                if not free.pays(still):
                     return (None,)
-            return (follower(slopes, middle, 0.0 if alone else distance / NEARER),)
+            return (Follower(rows, standing, fit, axes[2], window, 0.0 if alone else distance / NEARER),)
 
-        key = size, half, self.margin, moment.room, window, alone, points.tobytes(), rows.tobytes()
+        key = size, half, self.margin, moment.room, moment.rooms, window, alone, points.tobytes(), rows.tobytes()
         found = moment.kept("a camera that follows", key, following)[0]
         if found is not None:
             origin = found.at(moment.time)

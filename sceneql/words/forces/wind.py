@@ -54,7 +54,7 @@ class Wind(Force):
     @classmethod
     def _does_something(cls, given: Any) -> Any:
         if isinstance(given, dict) and not {"linear", "quadratic"} & set(given):
-            raise ValueError("wind needs a coefficient: `linear: 0.1 N*s/m`, `quadratic: 0.01 kg/m`, or both")
+            raise ValueError("wind needs a coefficient: `quadratic: 0.01 kg/m`, `linear: 0.1 N*s/m`, or both")
         return given
 
     def problems(self) -> Iterator[Problem]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from sceneql.kinds import FixedScalar, Moment, ObjectRef, Overlay, Problem, field
+from sceneql.kinds import FixedScalar, Moment, Overlay, Problem, Ref, Refers, field
 from sceneql.kinds.texts import overlong
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.units import describe, parse_unit, unit_of
@@ -30,7 +30,7 @@ SIDES = ("right", "left")
 class Legend(Overlay):
     """A bar of the colors of a field with numbers beside it, in the unit that is wanted, and its contours as lines."""
 
-    of: ObjectRef = field("What shows the field in colors: a `field_map`.")
+    of: Annotated[Ref, Refers("objects", showing="field_map")] = field("What shows the field in colors: a `field_map`.")
     unit: str | None = field("The unit of the numbers: `mg/L`; by default that of SI.", None)
     title: str | None = field(
         "What is said above the bar, by default the field's name where there is room; the unit follows.", None

@@ -1,0 +1,120 @@
+"""Help for names of parts: of none, of another family, or several where one stands."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from collections.abc import Mapping as Naming
+from collections.abc import Sequence as Sequenced
+
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.css_colors import NAMED
+from sceneql.compiler.meant.unknown import having_fields
+from sceneql.compiler.names import Names
+from sceneql.kinds import Refers
+from sceneql.language.repeat import copy_meant
+from sceneql.language.scope import Entry
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence
+from sceneql.quantities.diagnostic import Diagnostics, same_as, suggestion
+from sceneql.quantities.instead import instead
+
+
+def other_family(name: str, mark: Refers, names: Names, catalogue: Catalogue, family_of: Callable[[str], str]) -> str:
+    """The help for a part of a wrong family: the model that moves it, a word by that name, or parts of the right."""
+    body = _held_by(names.parts[name].fields) if mark.bodies and family_of(name) == "ties" else None
+    if body is not None:
+        return f"a tie is between bodies, not between their ties: write `{body}`"
+    mover = names.mover(name)
+    if mover and mark.family == "models":
+        return f"'{mover}' moves it: write `{mover}`"
+    if (word := same_as(name, catalogue.words(mark.family))) is not None:
+        return f"write `{word}`, a word, or the name of one of {mark.family}"
+    others = [part for part in names.parts if family_of(part) == mark.family]
+    return f"those of {mark.family} are {', '.join(others[:8])}" if others else f"write one under `{mark.family}:`"
+
+
+def _held_by(fields: Node | None) -> str | None:
+    """The first body that a tie holds, but the world."""
+    between = fields.entries.get("between") if isinstance(fields, Mapping) else None
+    bodies = [item.span.text for item in between.items] if isinstance(between, Sequence) else []
+    return next((one for one in bodies if one != "world"), None)
+
+
+def several_meant(node: Sequence, mark: Refers, entry: Entry, catalogue: Catalogue) -> str | None:
+    """The help for a list where an entry refers to one part."""
+    kinds = [catalogue.load(family, entry.word) for family in catalogue.families_of(entry.word)]
+    names = [item.span.text for item in node.items]
+    if len(names) == 1:
+        return f"write `{names[0]}`"
+    if "objects" not in (mark.family, mark.also):
+        return None
+    if any(cls is not None and "bodies" in cls.model_fields for cls in kinds) and all(
+        name.isidentifier() for name in names
+    ):
+        return f"each is a body of its own: write `bodies: {{{', '.join(f'{one}: {{of: {one}}}' for one in names)}}}`"
+    return f"several together are one: write `{{union: {{of: {node.span.text}}}}}`"
+
+
+def warn_of_another(
+    node: Scalar, family: str, user: str, entries: Naming[str, Entry], family_of: Naming[str, str], found: Diagnostics
+) -> None:
+    """Warn of a word in a model, ``user``, that makes another part, where there is a part by that word to be meant."""
+    if family_of.get(user) != "models" or family not in ("objects", "models"):
+        return  # a plain material beside a tinted one is most likely meant
+    same = [name for name, entry in entries.items() if entry.word == node.text and family_of[name] == family]
+    if same and "." not in same[0]:
+        text = f"'{node.text}' is a word here, and makes another one, with its defaults"
+        help = f"to name the one that is there write `{same[0]}`, to make another `{{{node.text}: {{}}}}`"
+        found.warning("second-part", text, node.span, help=help)
+
+
+def beside_world(place: str) -> str:
+    """The help where a tie has a position in place of a body."""
+    plain = " ".join(place.strip("[]").replace(",", " ").split())
+    plain += "" if plain[-1:].isalpha() else " m"
+    return f"write `world`, and the place in another field of the tie, `to: {plain}` of a rod, `at` of others"
+
+
+def part_meant(name: str, mark: Refers, choices: Sequenced[str], names: Names, catalogue: Catalogue) -> str | None:
+    """The help for a name of no part of the mark's families; ``choices``: the names of their parts."""
+    if (copy := copy_meant(name, {*choices, *names.parts})) is not None:
+        return copy
+    if mark.bodies and name[:1] in "-[0123456789":
+        return f"a place is no body: {beside_world(name)}"
+    if "models" in (mark.family, mark.also) and (model := names.model_of(name)):
+        whose = f"'{name}' is one of the bodies or masses of '{model}'"
+        all_of_it = f"{whose}: write `{model}`, which means all of them"
+        return f"{whose}: write `{model}.{name}`" if mark.bodies else all_of_it
+    if mark.bodies:
+        return suggestion(name, choices) or instead("body", name) or "name a body, or what stands still, `world`"
+    if (part := names.part_of(name)[0]) != name and part in choices:
+        return f"a part stands here, and none of its outputs: write `{part}`"
+    having = having_fields(["color"], mark.family, catalogue) if name in NAMED else []
+    if having:  # gold is metal
+        word = same_as(name, having) or having[0]
+        return f"write `{{{word}: {{color: {name}}}}}`, or `color: {name}` in its place"
+    words = catalogue.words(mark.family)
+    if names.gives(name) and (readers := names.readers(name, choices)):
+        return f"a part stands here, and none of its outputs: write `{readers[0]}`, which shows it"
+    model = names.part_of(name)[0]
+    shown = [one for one in choices if model != name and _names(names.parts[one].fields, model)]
+    if names.gives(name) and shown:
+        return f"a part stands here, and none of its outputs: write `{shown[0]}`, which shows it"
+    if mark.showing and names.gives(name):
+        map_of = f"{{map: {{{mark.showing}: {{of: {name}}}}}}}"
+        return f"a part stands here, and none of its outputs: write `{mark.family}: {map_of}`, and here `of: map`"
+    row = re.findall(r"[^\W\d]\w*", name)
+    if mark.panel and len(row) > 1 and all(one in choices for one in row):
+        return f"a row is a list: write `[[{', '.join(row)}]]`"
+    hint = instead("part", name) or suggestion(name, choices) or suggestion(name, words)
+    if hint is None and mark.panel:
+        hint = f"rows hold names of cameras and graphs, `[[{', '.join(choices[:2]) or 'front, top'}]]`"
+        hint += "; variants stand side by side by `[{each: variant}]`: `sceneql words layout`"
+    if hint is None and words:
+        hint = f"write the name of one, or a word, `{{{words[0]}: {{...}}}}`; the words are {', '.join(words)}"
+    return hint
+
+
+def _names(fields: Node | None, part: str) -> bool:
+    """Whether the text of an entry's fields has the name of a part."""
+    return fields is not None and re.search(rf"\b{re.escape(part)}\b", fields.span.text) is not None
