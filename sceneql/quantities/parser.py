@@ -54,6 +54,7 @@ TOKEN = re.compile(
     re.DOTALL,
 )
 
+_PARENTHESES = re.compile(r"\(([^()]*,[^()]*,[^()]*)\)\s*([^\W\d]\S*)?")
 _UNIT_IN_BRACKETS = re.compile(r"\[\s*([^\W\d][^\[\],]*?)\s*\]")
 _CROSSED = re.compile(rf"{NUMBER}\s*[a-zµ]*(?:\s*[x×]\s*{NUMBER}\s*[a-zµ]*)+")
 
@@ -307,6 +308,9 @@ class _Parser:
         if self.kind == "sign" and self.token not in "([":
             help = comma_meant(self.text) if self.token == "," else instead("sign", self.token)
             help = f"write `{plain}`" if (plain := modulo(self.text)) is not None else help
+            if self.token == "," and (inner := _PARENTHESES.fullmatch(self.text.strip())) is not None:
+                vector = vector_meant(f"{inner[1]}{' ' + inner[2] if inner[2] else ''}")
+                help = help if vector is None else f"a vector has no parentheses: write `{vector}`"
             return self._fail("syntax", f"'{self.token}' cannot stand here", help=help)
         odd = next((c for c in self.text if not c.isascii() and instead("sign", c)), None)
         if odd is not None:

@@ -22,6 +22,7 @@ from sceneql.compiler.meant.values_elsewhere import along_default, elsewhere, fi
 from sceneql.compiler.names import Names
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.compose import compose_node
+from sceneql.language.sections import empty
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, same_as
 from sceneql.quantities.literal import vector_meant
@@ -97,6 +98,9 @@ def better_alone(
             found[before] = replace(
                 found[before], help=f"it is a time: at {rate} frames a second write `{name}: {time}`"
             )
+    if code == "wrong-count" and isinstance(node, Scalar) and (more := _behind(written, name)):
+        whole = f"{name}: [{', '.join([node.span.text, *more])}]"
+        found[before] = replace(found[before], help=f"a list stands in brackets: write `{whole}`")
     counted = re.fullmatch(r"([\d.]+(?:e[-+]?\d+)?)\s*[a-z]+\s*(?:/\s*|per )(\w+)", node.span.text.strip())
     if code == "unknown-unit" and counted is not None and "is counted has no unit" in (help or ""):
         unit = (per_unit(f"1 per {counted[2]}") or f"1/{counted[2]}")[2:]
@@ -145,6 +149,17 @@ def _diagonal(node: Node) -> str | None:
     if len(rows) != THREE or [len(row) for row in cells] != [THREE] * THREE:
         return None
     return vector_meant(", ".join(row[k].span.text for k, row in enumerate(cells)))
+
+
+def _behind(written: Naming[str, Node], name: str) -> list[str]:
+    """The keys without values directly behind a field, which YAML makes of the items of a list without brackets."""
+    keys = [*written]
+    found: list[str] = []
+    for key in keys[keys.index(name) + 1 :]:
+        if not empty(written[key]):
+            break
+        found.append(key)
+    return found
 
 
 def _swept(reader: Any, written: Naming[str, Node], what: str) -> str | None:
