@@ -282,7 +282,7 @@ class Names:
             message = f"'{wanted}' is a part, not a value"
             some = f"write one of its outputs, such as '{self._some_output(wanted)}'"
             hint: str | None = (
-                some if self.outputs_of(wanted) else instead("name", wanted) or "it has no values to read"
+                some if self.outputs_of(wanted) != {} else instead("name", wanted) or "it has no values to read"
             )
         else:
             hint = self._copy_number(wanted) or instead("name", wanted)

@@ -75,6 +75,16 @@ OF_SECTIONS = (
         "a fluid is a `flow`, smoke a `diffusion` with `drift: {by: FLOW}`, and sparks and drops are `particles` with"
         " `emit`",
     ),
+    (
+        "field.blobby",
+        "position pos location center centre",
+        "all balls are points of one part: `points: [0 1 0 m, 0.5 1 0 m]`",
+    ),
+    (
+        "field.cloth field.mass_spring",
+        "colliders collider collides_with collision collisions",
+        "what it touches is a contact: write `contacts: [collision]`, which is with all solids",
+    ),
     ("field.gear", "ratio gear_ratio transmission", "its teeth say it: a ratio of 2 is `teeth: 40 20`"),
     (
         "field.streamlines",
@@ -308,6 +318,7 @@ OF_SECTIONS = (
         "functions are there without it, `sceneql words functions`; `include: more.yaml` takes in a script",
     ),
     ("section", "for while foreach", REPEAT),
+    ("section", "layout", "write `outputs: {film: {video: {layout: [{each: variant}]}}}`: `sceneql words layout`"),
     ("section", "if switch", f"there is no `if` around parts; in a value {IF}"),
     (
         "section",

@@ -339,6 +339,12 @@ OF_PARTS = (
         "the object has fields for that, `{box: {size: 1 1 1 m, position: 1 0 0 m, rotation: {about: y, angle: 30 deg},"
         " color: red}}`; a `group` moves, turns and scales several",
     ),
+    (
+        "objects",
+        "gear gearwheel cog cogwheel",
+        "a `gear` is a tie of two bodies that turn: `sceneql words gear`; the wheel itself is `{cylinder: {radius:"
+        " <radius|0.5 m>, height: 0.1 m}}`",
+    ),
     ("objects", "boolean bool csg", "write `{difference: {of: [a, b]}}`, or `union`, `intersection`"),
     (
         "field.forces",
@@ -349,6 +355,11 @@ OF_PARTS = (
     ("field.forces", "mass", "write its `strength`, G times the mass: `6.67e-11*1e10 m^3/s^2`"),
     ("objects", "indexedfaceset faces triangles polygons vertices", "a file has them: `{mesh: {file: cow.obj}}`"),
     ("objects", "text title label caption", "text stands in `overlays: {title: {caption: {text: ...}}}`"),
+    (
+        "forces contacts ties lights overlays",
+        "none null off no nothing",
+        "a variant leaves a part out where it writes its section anew: `variants: {vacuum: {forces: [gravity]}}`",
+    ),
     ("named", "gravity", "write `gravity: {gravity: {strength: 9.81 m/s^2}}`, or only `forces: [gravity]`"),
     (
         "list",

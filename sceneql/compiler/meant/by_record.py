@@ -5,7 +5,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Collection, Iterator
 from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel
@@ -17,11 +18,16 @@ from sceneql.compiler.names import Names
 from sceneql.kinds import Kind
 from sceneql.language.in_group import in_group
 from sceneql.language.scope import Entry
-from sceneql.language.tree import Mapping, Node, Scalar
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import STRONG, nearest, same_as
 
 LOOKS = ("radius", "material", "color")
 """Fields of an object that masses have themselves."""
+CONSTANTS = ("params", "parameters", "constants", "args", "coefficients")
+"""Fields of other programs for the constants of a system of equations."""
+ANGLES = ("angle", "launch_angle", "elevation", "theta")
+"""Fields of other programs for the angle of a throw."""
+_EQUATION = re.compile(r"(?:d\(?(\w+)\)?/dt|(\w+)'|(\w+)_dot)\s*=\s*(.+)")
 SEVERAL = 2
 """Least number of fields that tell the field that they stand in."""
 SHOWN = 300
@@ -38,18 +44,19 @@ def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> st
             word = cls.__module__.rpartition(".")[2]
             return f"write its sizes as they shall be, or let a group scale it: `{in_group(word, node.entries)}`"
         return balls_of(reader.names, node)
-    return _by_names(reader, cls, name, node) or _inside_one(cls, name, node)
+    told = _by_names(reader, cls, name, node) or _inside_one(cls, name, node)
+    return told or _of_one(reader, cls, name, node) or _system(known, name, node) or _thrown(known, name, node)
 
 
 def balls_of(names: Names, node: Node | None) -> str | None:
     """The help for the fields of an object at all masses of a model, which are balls by themselves: of which radius."""
     fields = node.entries if isinstance(node, Mapping) else {}
-    for one in fields.values():
+    for one in fields.values() if {*LOOKS} & fields.keys() else ():
         model = one.text.removesuffix(".positions") if isinstance(one, Scalar) else ""
         entry = names.parts.get(model)
         if entry is None or "positions" not in (names.outputs_of(model) or ()):
             continue
-        look = ", ".join(f"{key}: {fields[key].span.text}" for key in LOOKS if key in fields) or "radius: 2 cm"
+        look = ", ".join(f"{key}: {fields[key].span.text}" for key in LOOKS if key in fields)
         own = f"write `{look}` among the fields of `{model}`, the {entry.word}"
         return f"its masses are balls by themselves: {own}; soft discs are `{{sprites: {{points: {model}.positions}}}}`"
     return None
@@ -107,6 +114,43 @@ def _inside_one(cls: type[BaseModel], name: str, node: Mapping) -> str | None:
             text = ", ".join(f"{ours}: {node.entries[one].span.text}" for one, ours in found.items())
             return f"write `{field}: {{{text}}}`"
     return None
+
+
+def _of_one(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:
+    """The help for a field of the only one of what another field holds by name: the position of a particle."""
+    known = {kinds.written_name(key) for key in cls.model_fields}
+    for field, record in _tables(cls):
+        inner = {kinds.written_name(key) for key in record.model_fields}
+        own = {one: value.span.text for one, value in node.entries.items() if one in inner}
+        alone = name in inner and not {field, "of"} & node.entries.keys() and len(own) > 1
+        if alone and not any("\n" in text for text in own.values()) and name not in known:
+            text = ", ".join(f"{one}: {value}" for one, value in own.items())
+            place = f"{reader.owner}.one.position"
+            return f"it is told of each: write `{field}: {{one: {{{text}}}}}`; its place is then `{place}`"
+    return None
+
+
+def _system(known: Collection[str], name: str, node: Mapping) -> str | None:
+    """The help for equations as a book writes them, and for their constants, in a system of them."""
+    value = node.entries[name]
+    if not {"start", "rate"} <= {*known}:
+        return None
+    if name in CONSTANTS and isinstance(value, Mapping) and "\n" not in value.span.text:
+        return f"constants stand at the left margin: write `define: {value.span.text}`"
+    items = value.items if isinstance(value, Sequence) else [value]
+    found = [_EQUATION.fullmatch(one.text.strip()) for one in items if isinstance(one, Scalar)]
+    rates = [f"{one[1] or one[2] or one[3]}: {one[4]}" for one in found if one is not None]
+    return f"write `rate: {{{', '.join(rates)}}}`" if rates and len(rates) == len(items) else None
+
+
+def _thrown(known: Collection[str], name: str, node: Mapping) -> str | None:
+    """The help for a speed and its angle in place of a velocity."""
+    speed = next((node.entries[one].span.text for one in ("velocity", "speed", "v0") if one in node.entries), "")
+    if name not in ANGLES or "velocity" not in known or not re.fullmatch(r"[\d.]+ *[a-z]+/[a-z]+", speed):
+        return None
+    angle = node.entries[name].span.text
+    angle = angle if angle[-1:].isalpha() else f"{angle} deg"
+    return f"write `velocity: [{speed}*cos({angle}), {speed}*sin({angle}), 0 m/s]`"
 
 
 def _tables(cls: type[BaseModel]) -> Iterator[tuple[str, type[BaseModel]]]:

@@ -13,6 +13,7 @@ from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.meant.likely import wrong_as
+from sceneql.compiler.meant.together import together
 from sceneql.compiler.meant.unknown import DEFAULT, having_fields
 from sceneql.compiler.meant.values_elsewhere import quantities_fitting
 from sceneql.kinds import Settings, written_name
@@ -53,7 +54,7 @@ class _Section:
         yield from self._as_setting()
         for exact in (True, False):
             yield from self._in_setting(exact)
-            yield from self._word() if exact else ()
+            yield from self._word(exact)
             yield from self._single() if exact else self._as_output()
             yield from self._in_word(exact)
 
@@ -80,6 +81,14 @@ class _Section:
             return ""
         return ", ".join(f"{field}: {node.span.text}" for field, node in told)
 
+    def _named(self, cls: type[BaseModel]) -> str:
+        """Its fields under the names that a record has for them, where it has all of them; else empty."""
+        fields = self.value.entries if isinstance(self.value, Mapping) else {}
+        ours = [written_name(name) for name in cls.model_fields]
+        told = [(nearest(name, ours, STRONG), node) for name, node in fields.items()]
+        known = all(field is not None for field, _ in told)
+        return ", ".join(f"{field}: {node.span.text}" for field, node in told) if known else ""
+
     def _in_setting(self, exact: bool) -> Iterator[str]:
         """It as a field of the clock: ``fps: 24``."""
         (cls,) = _records(Settings.model_fields[SETTING])
@@ -90,25 +99,29 @@ class _Section:
             fields = [f"{name}: {one.span.text}" for name, one in own.items()]
             yield f"{SETTING}: {{{', '.join([*fields, f'{field}: {self.value.span.text}'])}}}"
 
-    def _word(self) -> Iterator[str]:
+    def _word(self, exact: bool) -> Iterator[str]:
         """It as a word of a family, with its fields, or with a value of one of them: ``gravity: 1.62 m/s^2``."""
         value, text = self.value, self.value.span.text
-        for family in self.catalogue.families_of(self.key):
-            cls = self.catalogue.load(family, self.key)
-            name = NAMES.get(family, f"my_{self.key}")
+        words = [(family, self.key) for family in self.catalogue.families_of(self.key)]
+        if not exact:
+            others = [] if self.own else [(one, same_as(self.key, self.catalogue.words(one))) for one in ORDER]
+            words = [(family, word) for family, word in others if word is not None]
+        for family, key in words:
+            cls = self.catalogue.load(family, key)
+            name = NAMES.get(family, f"my_{key}")
             if cls is None:
                 continue
             needed = [key for key, info in cls.model_fields.items() if info.is_required()]
             if isinstance(value, Mapping) and {*value.entries} <= {*map(written_name, cls.model_fields)}:
-                yield self._part(family, name, f"{{{self.key}: {text}}}")
+                yield self._part(family, name, f"{{{key}: {text}}}")
             elif isinstance(value, Scalar) and value.text.lower() in SWITCHES:
-                yield self._part(family, "", self.key)
+                yield self._part(family, "", key)
             elif isinstance(value, Scalar):
                 fits = list(quantities_fitting(self.reader, value, cls.model_fields))
                 fits = [one for one in fits if self._takes(cls, written_name(one), value)]
                 fits = fits or (needed if len(needed) == 1 and value.kind == "text" else [])
                 if len(fits) == 1:
-                    yield self._part(family, name, f"{{{self.key}: {{{written_name(fits[0])}: {text}}}}}")
+                    yield self._part(family, name, f"{{{key}: {{{written_name(fits[0])}: {text}}}}}")
 
     def _single(self) -> Iterator[str]:
         """It as the only part of a section, under a name: ``camera: {position: 0 1 4 m}``, ``light: sun``."""
@@ -116,8 +129,10 @@ class _Section:
         if family not in self.catalogue.families:
             return
         name = NAMES.get(family, f"my_{self.key}")
-        if isinstance(value, Scalar) and self.catalogue.load(family, value.text) is not None:
-            yield self._part(family, name, value.text)
+        choices = self.catalogue.words(family)
+        word = None if not isinstance(value, Scalar) else value.text if value.text in choices else None
+        if isinstance(value, Scalar) and (word := word or same_as(value.text, choices)) is not None:
+            yield self._part(family, name, word)
         if not isinstance(value, Mapping) or not value.entries:
             return
         if len(value.entries) == 1 and self.catalogue.load(family, next(iter(value.entries))) is not None:
@@ -127,6 +142,10 @@ class _Section:
         elif words := having_fields(list(value.entries), family, self.catalogue):
             word = USUAL[family] if USUAL.get(family) in words else words[0]
             yield self._part(family, name, f"{{{word}: {value.span.text}}}")
+        elif (word := nearest(next(iter(value.entries)), choices, STRONG)) is not None and len(value.entries) == 1:
+            yield self._part(family, name, f"{{{word}: {next(iter(value.entries.values())).span.text}}}")
+        elif (cls := self.catalogue.load(family, USUAL.get(family, ""))) is not None and (told := self._named(cls)):
+            yield self._part(family, name, f"{{{USUAL[family]}: {{{told}}}}}")
 
     def _has_word(self, family: str, part: Node) -> bool:
         """Whether a part has a word of a family."""
@@ -186,6 +205,10 @@ def improve_sections(script: Script, catalogue: Catalogue, reader: Any, found: D
             continue
         section = _Section(key, value, script, catalogue, reader, own=instead("section", key) is not None)
         told = next(section.entries(), None)
+        by_frames = together(key, [key], script.root, ("end", "fps"))
+        if by_frames is not None and "end" in by_frames:
+            found.found[k] = replace(one, help=f"{by_frames} in the `{SETTING}`")
+            continue
         if told is not None:
             found.found[k] = replace(one, help=f"write `{told}`")
 

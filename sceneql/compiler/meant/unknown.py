@@ -193,7 +193,7 @@ def word_meant(
         return joined
     if (same := same_as(entry.word, words)) is not None:
         return f"did you mean '{same}'?"
-    if family == "materials" and (other := instead(family, entry.word)) is not None:
+    if family in ("materials", "objects") and (other := _instead(entry, family)) is not None:
         return other
     if "//" in entry.word:
         return f"a comment begins with `#`: write `{entry.word.replace('//', '#', 1)}`"
@@ -215,10 +215,8 @@ def word_meant(
     if (named := catalogue.load(family, entry.name)) is not None:
         inner = _fields_of(entry, named)
         return f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: {inner}}}`"
-    if (other := instead(family, entry.word)) is not None:
-        place = entry.span
-        own = fields if isinstance(fields, Mapping) else Mapping({}, {}, True, place.source, place.start, place.end)
-        return filled(other, own, ())
+    if (other := _instead(entry, family)) is not None:
+        return other
     having = [] if fields is None else having_fields([entry.word], family, catalogue)
     if fields is not None and having:
         usual = next((word for word in DEFAULT.values() if word in having), having[0])
@@ -232,6 +230,13 @@ def word_meant(
         return f"did you mean '{near}'?"
     having = having_fields(given, family, catalogue) if given else []
     return f"words with such fields are {', '.join(having[:MANY])}" if having else None
+
+
+def _instead(entry: Entry, family: str) -> str | None:
+    """The sentence on a word of other programs, with the entry's own values."""
+    other, place = instead(family, entry.word), entry.span
+    nothing = Mapping({}, {}, True, place.source, place.start, place.end)
+    return None if other is None else filled(other, entry.fields if isinstance(entry.fields, Mapping) else nothing, ())
 
 
 def _joined(text: str, family_of: Collection[str]) -> str | None:
