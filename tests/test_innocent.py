@@ -49,7 +49,32 @@ forces: [gravity]
 contacts: {{hit: {{collision: {{between: [fall, floor]}}}}}}
 clock: {{end: 0.1 s}}
 """
+THROUGH = """
+objects: {ball: {sphere: {radius: 0.2 m, position: 0 3 0 m}}, floor: plane, other: {box: {%s}}}
+models: {fall: {particles: {of: ball, mass: 1 kg}}}
+forces: [gravity]
+contacts: {touch: {collision: {between: [fall, %s]}}}
+clock: {end: 1.5 s}
+"""
+BESIDE = """
+objects: {bob: {box: {size: 1 0.2 0.2 m, position: 0 1 0 m}}}
+models: {swing: {rigid: {of: bob, mass: 1 kg}}}
+ties: {string: {rod: {between: [swing, world], from: 0.5 1 0 m, to: 0 2 0 m}}}
+forces: [gravity]
+clock: {end: 1 s}
+"""
+DOWNWARDS = """
+objects: {ball: {sphere: {radius: 0.2 m, position: 0 2 0 m}}}
+models: {fall: {particles: {of: ball, mass: 1 kg}}}
+forces: {weight: {gravity: {acceleration: 0 9.81 0 m/s^2}}}
+cameras: {eye: {perspective: {position: 0 1 6 m, look_at: 0 2 0 m, up: 0 -1 0}}}
+clock: {end: 0.1 s}
+"""
 SCENES = {
+    "a ball on a hidden table": THROUGH % ("size: 4 0.2 4 m, position: 0 1 0 m, hidden: yes", "other"),
+    "a ball that a gate lets pass": THROUGH % ("size: 1 0.5 1 m, position: [4 m/s*time, 1 m, 0 m]", "floor"),
+    "a box that a rod holds by its side": BESIDE,
+    "a scene with y downwards": DOWNWARDS,
     "a ball that rests on the floor before it is in a mark on it": RESTING,
     "a camera under a table of glass": f"objects: {{table: {{plane: {{material: glass}}}}, {BALL}}}\n"
     f"cameras: {{eye: {EYE % 0.3}}}\nlights: {{lamp: {{point: {{position: 1 -1 1 m}}}}}}\n",

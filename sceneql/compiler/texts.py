@@ -21,6 +21,8 @@ _NUMBERED = r"(?<!\\)\\(?:x[\da-fA-F]{2}|u[\da-fA-F]{4}|U[\da-fA-F]{8})"
 _PRINTED = re.compile(r"%(\.\d+[efg])")
 _TEX = re.compile(r"\$([^${}]*[\\^_=][^$]*)\$")
 """A formula of TeX between dollar signs."""
+LONGEST_TEX = 500
+"""Longest text in which a formula is looked for."""
 _SIGN = re.compile(r"\$(\{[^{}]*\})")
 _LINK = re.compile(r"[^\W\d]\w*(?:\.\w+)+")
 PIECE = re.compile(r"\{\{|\}\}|\{(?P<inside>[^{}]*)\}|(?P<odd>[{}])")
@@ -40,7 +42,7 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
         found.error("limit-refused", said, node.span)
         return None
     text, start = parsed_text(node), node.content.start
-    if (tex := _TEX.search(text)) is not None:
+    if len(text) <= LONGEST_TEX and (tex := _TEX.search(text)) is not None:
         help = f"TeX stands in a formula, `{{formula: {{tex: '{tex[1].strip()}'}}}}`: `sceneql words formula`"
         found.warning("tex-in-text", "this is drawn as it stands, with its dollar signs", node.span, help=help)
     same = text == node.content.text

@@ -116,7 +116,8 @@ def _chosen(system: System, kinds: Kinds, exact: bool, signs: bool) -> tuple[Lef
     by_masses = left_by_masses(system, kinds) if kinds.core.sum() > SMALL else None
     if by_masses is not None:
         pattern = _pattern(by_masses, inertia_places(system, by_masses))
-        solver = _factored(pattern, 3, _points(system, by_masses), exact, signs)
+        # Barriers are so stiff that iterations take as long as ten factorizations, even of solids.
+        solver = _factored(pattern, 3, _points(system, by_masses), exact, signs or bool(system.structure.limits))
         if solver is not None:
             return by_masses, pattern, solver
     left = left_by_entries(system, kinds)
@@ -259,7 +260,7 @@ def _factored(
     """Factorization on a pattern of units; None if it would fill in too much.
 
     A system with a border is always factored, as iterations fail on it. ``filling``: whether the fill of solids is
-    accepted, for signs, which iterations do not give, and for thin parts at rest, where they are slow.
+    accepted, for signs, which iterations do not give, and for thin parts at rest and barriers, where they are slow.
     """
     import numpy as np
 

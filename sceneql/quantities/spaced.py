@@ -39,6 +39,8 @@ USUAL = "30"
 """Frames a second of a film that says nothing else."""
 BARS = 2
 """Number of bars around an absolute value."""
+LONGEST = 500
+"""Longest text in which habits of other programs are looked for."""
 SIZE = 3
 """Components of the vectors that are recognised."""
 
@@ -168,6 +170,8 @@ def other_signs(text: str) -> str | None:
 
 def ternary(text: str) -> str | None:
     """A choice of other languages, ``c ? a : b`` or ``a if c else b``, as ``where(c, a, b)``; None of other texts."""
+    if len(text) > LONGEST:
+        return None
     found = _CHOICE.fullmatch(text.strip())
     if found is not None:
         return f"where({found[1].strip()}, {found[2].strip()}, {found[3].strip()})"
@@ -184,6 +188,8 @@ def typed_plainly(text: str) -> str | None:
 
 def modulo(text: str) -> str | None:
     """A formula with the signs of other languages for rests and whole quotients as functions; None without any."""
+    if len(text) > LONGEST:
+        return None
     plain = _REST.sub(r"mod(\1, \2)", _QUOTIENT.sub(r"floor(\1/\2)", text.strip()))
     return None if plain == text.strip() or re.search(r"%|//", plain) else plain
 
@@ -196,7 +202,7 @@ def per_unit(text: str) -> str | None:
 
 def vector_called(text: str) -> str | None:
     """The vector that a call of other programs makes, as ``new THREE.Vector3(0, 1, 0)``, in brackets; else None."""
-    found = _CALLED.fullmatch(text.strip())
+    found = _CALLED.fullmatch(text.strip()) if len(text) <= LONGEST else None
     numbers = [] if found is None else [one.strip() for one in found[1].split(",")]
     return f"[{', '.join([*numbers, '0'][:SIZE])}]" if numbers else None
 

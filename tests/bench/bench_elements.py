@@ -2,7 +2,8 @@
 
 Run: python tests/bench/bench_elements.py [name ...]. Rest is found by plain Newton's method on the project's own forces
 and stiffness (tests/solids.py), frequencies by SciPy from its matrices; `falling` times steps of bdf2 with 28,000
-elements beside the same tetrahedra as springs, `dropped` those that fall onto a torus.
+elements beside the same tetrahedra as springs, `dropped` those that fall onto a torus; `elastica` has
+felupe beside it where that is installed.
 """
 
 from __future__ import annotations
@@ -90,6 +91,35 @@ def elastica() -> None:
         u, w = (one.read("end.displacement", places) / 10)[[0, 2]]
         errors = w / ELASTICA[4][0] - 1, -u / ELASTICA[4][1] - 1
         told(f"elastica, load 4, {law}, {steps} plain Newton steps", *errors, seconds=time.perf_counter() - start)
+
+    peer()
+
+
+def peer() -> None:
+    """The same strip by felupe's H20, 40 cells, load 4 in 8 steps; nothing without it."""
+    try:
+        import felupe as fem
+    except ImportError:
+        print("felupe is not installed")
+        return
+    start = time.perf_counter()
+    cube = fem.mesh.add_midpoints_edges(fem.Cube(a=(0, -0.5, -0.05), b=(10, 0.5, 0.05), n=(41, 2, 2)))
+    field = fem.FieldContainer([fem.Field(fem.RegionQuadraticHexahedron(cube), dim=3)])
+    body, places = fem.SolidBody(fem.NeoHooke(mu=0.6e6, bulk=0.4e6), field), cube.points
+    tip = np.flatnonzero(np.isclose(places[:, 0], 10))
+    corner = np.isclose(abs(places[tip, 1]), 0.5) & np.isclose(abs(places[tip, 2]), 0.05)
+    shares = np.where(corner, -1 / 12, 1 / 3)[:, None] * [[0.0, 0.0, 1.0]]
+    load = fem.PointLoad(field, tip, values=0 * shares)
+    bounds = {"left": fem.Boundary(field[0], fx=0.0)}
+    held, free = fem.dof.partition(field, bounds)
+    ends, steps = fem.dof.apply(field, bounds, held), 0
+    for part in range(1, 9):
+        load.update(0.5 * part * shares)
+        solved = fem.newtonraphson(items=[body, load], dof0=held, dof1=free, ext0=ends, verbose=False, tol=1e-8)
+        steps += solved.iterations
+    u, w = (field[0].values[tip].mean(axis=0) / 10)[[0, 2]]
+    errors = w / ELASTICA[4][0] - 1, -u / ELASTICA[4][1] - 1
+    told(f"elastica, load 4, felupe's H20, {steps} Newton steps", *errors, seconds=time.perf_counter() - start)
 
 
 def followed(fields: str, outputs: tuple[str, ...], objects: str = "") -> tuple[list[Any], int, float]:

@@ -12,10 +12,10 @@ from sceneql.quantities.literal import vector_meant
 
 _FIRST = re.compile(r"\{(\w+): [<\[]")
 _BLANK = re.compile(r"<(\w+)\|([^>]*)>")
-_NUMBER = re.compile(r"(?<![\w.])\d+\.?\d*(?:[eE][-+]?\d+)?")
 CELLS = ("cells", "resolution", "grid", "n", "divisions", "nodes", "points")
 """Fields of other programs for a number of cells."""
-_SIGNED = re.compile(r"(?<![\w.])-?\d+\.?\d*(?:[eE][-+]?\d+)?")
+_QUANTITY = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?) ?([^\W\d]\w*)?")
+_ITEM = re.compile(r"\s+(?=[-+.\d])")
 _RATE = re.compile(r"d\(?(\w+)\)?\s*/\s*dt")
 CORNERS = (
     ("corner1", "corner2"), ("min", "max"), ("low", "high"), ("from", "to"), ("p1", "p2"), ("start", "end"),
@@ -135,12 +135,20 @@ def _by_cells(name: str, node: Mapping, known: Collection[str]) -> str | None:
     size = node.entries.get("size")
     if "cell" not in known or "cell" in node.entries or name not in CELLS or size is None:
         return None
-    counts = [float(one) for one in _NUMBER.findall(node.entries[name].span.text)]
-    sides = [float(one) for one in _NUMBER.findall(size.span.text)]
-    unit = re.search(r"[^\W\d]\w*(?=\W*$)", size.span.text)
-    if not counts or not sides or counts[0] <= 0.0 or unit is None:
+    counts, sides = _numbers(node.entries[name].span.text), _numbers(size.span.text)
+    if counts is None or sides is None or counts[0][0] <= 0.0 or not sides[1]:
         return None
-    return f"it has the size of a cell: write `cell: {sides[0] / counts[0]:.6g} {unit[0]}`"
+    return f"it has the size of a cell: write `cell: {sides[0][0] / counts[0][0]:.6g} {sides[1]}`"
+
+
+def _numbers(text: str) -> tuple[list[float], str] | None:
+    """Plain numbers of one unit, ``""`` if none is written, side by side, in brackets or not; else None."""
+    items = [one for part in text.replace("[", " ").replace("]", " ").split(",") for one in _ITEM.split(part) if one]
+    parts = [_QUANTITY.fullmatch(" ".join(item.split())) for item in items]
+    units = [part[2] or "" for part in parts if part is not None]
+    if not parts or None in parts or (any(units[:-1]) and len({*units}) > 1):
+        return None
+    return [float(part[1]) for part in parts if part is not None], units[-1]
 
 
 def _corners(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
@@ -148,11 +156,13 @@ def _corners(name: str, unknown: Sequenced[str], node: Mapping, known: Collectio
     pair = next((pair for pair in CORNERS if name in pair and {*pair} <= {*unknown}), None)
     if pair is None or not {"size", "position"} <= {*known} or "size" in node.entries:
         return None
-    low, high = ([float(one) for one in _SIGNED.findall(node.entries[one].span.text)] for one in pair)
-    if len(low) != len(high) or len(low) not in (2, 3):
+    both = [_numbers(node.entries[one].span.text) for one in pair]
+    if both[0] is None or both[1] is None:
+        return "it has a size and the place of its middle: write `size: ...` and `position: ...`"
+    (low, unit), (high, other) = both[0], both[1]
+    if len(low) != len(high) or len(low) not in (2, 3) or (unit and other and unit != other):
         return None
-    found = re.search(r"[\d.]\s*([^\W\d]\w*)", node.entries[pair[0]].span.text)
-    unit = "m" if found is None else found[1]
+    unit = unit or other or "m"
     size = " ".join(f"{abs(b - a):.6g}" for a, b in zip(low, high, strict=True))
     middle = " ".join(f"{0.0 + (a + b) / 2:.6g}" for a, b in zip(low, high, strict=True))
     return f"write `size: {size} {unit}`, and of its middle `position: {middle} {unit}`"

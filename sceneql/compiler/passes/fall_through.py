@@ -8,6 +8,7 @@ from typing import Any, cast
 from sceneql.compiler.passes.fillings import Beginning
 from sceneql.compiler.passes.overlaps import UNKNOWN, field_at
 from sceneql.compiler.passes.unseen import level_of
+from sceneql.compiler.values_below import values_of
 from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Interaction, Model, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
@@ -29,8 +30,13 @@ def warn_of_falling_through(
     tasks: Mapping[str, Task], groups: Sequence[Island], end: float, found: Diagnostics
 ) -> None:
     """Warn of each model that falls into a solid of the script before the ``end`` [s], without a contact."""
-    solids = {name: tasks[name].kind for name in standing(tasks) if tasks[name].span is not None}
     start: Any = Beginning(tasks)
+    stand = {name: tasks[name].kind for name in standing(tasks)}
+    solids = {
+        name: (kind, _box(kind, start))
+        for name, kind in stand.items()
+        if tasks[name].span is not None and all(value.constant for value in values_of(kind))
+    }
     for island in groups if 0 < len(solids) <= MOST_OBJECTS else ():
         for name in island.models:
             forces = [cast(Interaction, tasks[force].kind) for force, model in island.forces if model == name]
@@ -39,8 +45,10 @@ def warn_of_falling_through(
                 continue
             touched = {one: others for one, model, others in island.contacts if model == name}
             known = {other for others in touched.values() for other in others}
-            if set(solids) <= known:
-                continue
+            known |= {ref.name for one in touched for ref in cast(Contact, tasks[one].kind).ties()} - {name}
+            unknown = [tasks[one].kind for one in known - stand.keys() if one in tasks]
+            if set(solids) <= known or not all(getattr(kind, "list", None) for kind in unknown):
+                continue  # where it meets what is hidden, or moves, is not known; single masses do not hold it up
             starts = starts_of(cast(Model, tasks[name].kind), tasks, start)[:MOST]
             hit = _first_hit(starts, pull, end, solids, known, start)
             if hit is not None and hit[0] not in known:
@@ -105,7 +113,7 @@ def _first_hit(
     starts: Sequence[Start],
     pull: tuple[float, ...],
     end: float,
-    solids: Mapping[str, Any],
+    solids: Mapping[str, tuple[Any, Any]],
     touched: Collection[str],
     start: Any,
 ) -> tuple[str, float] | None:
@@ -117,20 +125,36 @@ def _first_hit(
     hits = []
     for place, velocity, reach in starts:
         way = [tuple(p + v * t + 0.5 * g * t * t for p, v, g in zip(place, velocity, pull, strict=True)) for t in times]
-        for name, solid in solids.items():
-            inside = _inside(solid, way, reach if name in touched else 0.0, start)
+        for name, (solid, box) in solids.items():
+            inside = _inside(solid, box, way, reach if name in touched else 0.0, start)
             if any(inside) and (name in touched or not inside[0]):
                 hits.append((times[inside.index(True)], name))
     return None if not hits else (min(hits)[1], min(hits)[0])
 
 
-def _inside(solid: Any, way: Sequence[tuple[float, ...]], reach: float, start: Any) -> list[bool]:
+def _box(solid: Any, start: Any) -> Any:
+    """Corners [m] of the box of a solid that stands; None where it is not known."""
+    import numpy as np  # here, where a check needs it
+
+    try:
+        return solid.extent(np.eye(3, 4), start)
+    except UNKNOWN:
+        return None
+
+
+def _inside(solid: Any, box: Any, way: Sequence[tuple[float, ...]], reach: float, start: Any) -> list[bool]:
     """Whether each of some places [m] is in a solid, or within a distance of it; nowhere where that is not known."""
     if (level := level_of(solid)) is not None:
         return [y <= level + reach for _, y, _ in way]
     import numpy as np  # here, where a check needs it
 
-    try:
-        return [bool(one <= reach) for one in field_at(solid, np.array(way), start)]
-    except UNKNOWN:
-        return [False] * len(way)
+    places = np.array(way)
+    near = np.ones(len(way), dtype=bool)
+    if box is not None:
+        near = ((places >= box[0] - reach) & (places <= box[1] + reach)).all(axis=1)
+    if near.any():
+        try:
+            near[near] = field_at(solid, places[near], start) <= reach
+        except UNKNOWN:
+            near[:] = False
+    return [bool(one) for one in near]

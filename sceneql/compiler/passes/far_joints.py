@@ -100,14 +100,16 @@ def warn_of_unturned(tasks: Mapping[str, Task], groups: Sequence[Island], found:
 
 
 def _hangs(tie: Any, place: Sequence[float], pull: Sequence[float]) -> bool:
-    """Whether a rod holds a body straight below a fixed point of the world."""
+    """Whether a rod holds a body straight below a fixed point of the world, at a place above or below its middle."""
     ends = [getattr(tie, name, None) for name in ("from_", "to")]
     fixed = [end for end, ref in zip(ends, tie.between, strict=True) if not ref.name]
-    if len(fixed) != 1 or not isinstance(fixed[0], Value) or not fixed[0].constant:
+    own = [end for end, ref in zip(ends, tie.between, strict=True) if ref.name and end is not None]
+    known = [end.number() for end in (*fixed, *own) if isinstance(end, Value) and end.constant]
+    if len(fixed) != 1 or len(known) < len(fixed) + len(own):
         return False
-    arm = [c - float(p) for c, p in zip(place, fixed[0].number(), strict=True)]
-    along = sum(a * b for a, b in zip(arm, pull, strict=True))
-    return along > (1.0 - STILL) * hypot(*arm) * hypot(*pull) > 0.0
+    arms = [[float(c) - float(p) for c, p in zip(at, known[0], strict=True)] for at in (place, *known[1:])]
+    along = [sum(a * b for a, b in zip(arm, pull, strict=True)) for arm in arms]
+    return all(part > (1.0 - STILL) * hypot(*arm) * hypot(*pull) > 0.0 for part, arm in zip(along, arms, strict=True))
 
 
 def _turning(arm: Sequence[float], pull: Sequence[float], axis: Sequence[float]) -> float:

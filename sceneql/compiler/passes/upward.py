@@ -77,6 +77,9 @@ def _along_z(value: object) -> bool:
 def warn_of_rising(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     """Warn of the only weight of a script where it points upwards, along y."""
     weights = [task for task in tasks.values() if isinstance(task.kind, Interaction) and task.kind.weighs]
+    ups = [getattr(task.kind, "up", None) for task in tasks.values() if isinstance(task.kind, Camera)]
+    if any(isinstance(up, Value) and up.constant and up.number()[1] < 0.0 for up in ups):
+        return  # y points downwards there
     for task in weights if len(weights) == 1 else ():
         for field in ("acceleration", "direction"):
             value = getattr(task.kind, field, None)
