@@ -19,7 +19,7 @@ from sceneql import kinds
 from sceneql.compiler import limits, paint, values
 from sceneql.compiler.annotations import could_be, is_fixed, unwrap
 from sceneql.compiler.formulas import Wanted, read_formula
-from sceneql.compiler.meant import likely
+from sceneql.compiler.meant import likely, under_names
 from sceneql.compiler.meant import quantity_help as helped
 from sceneql.compiler.meant.chained import improve
 from sceneql.compiler.meant.quantity_help import TRUE
@@ -274,7 +274,8 @@ class Reader:
         if fixed and isinstance(node, Scalar):
             return tuple(self._spread(node, arms, what))
         items = node.items if isinstance(node, Sequence) else [node]
-        if not fixed and isinstance(node, MappingNode) and (help := likely.listed(node, arms[0], what)) is not None:
+        help = None if fixed or not isinstance(node, MappingNode) else under_names.listed(node, arms[0], what)
+        if help is not None:
             raise self._fail("wrong-shape", f"{what} is a list, not parts by name", node.span, help)
         if not fixed:
             items = [one for item in items for one in self._copies(item, arms[0])]
@@ -330,7 +331,7 @@ class Reader:
 
     def _dict(self, node: Node, arms: tuple[Any, ...], what: str) -> dict[Any, Any]:
         if not isinstance(node, MappingNode):
-            better = likely.by_name(node, arms[1], bool(unwrap(arms[0])[1]))
+            better = under_names.by_name(node, arms[1], bool(unwrap(arms[0])[1]))
             raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, better)
         named, result, ok = unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():

@@ -374,14 +374,9 @@ class Contact(Kind):
         raise NotImplementedError
 
     def assemble_carried(
-        self,
-        name: str,
-        assembly: Assembly,
-        skins: Sequence[str],
-        carried: Sequence[Bodies],
-        everyone: Sequence[Bodies],
-        others: tuple[Ref, ...],
-    ) -> None:
+        self, name: str, assembly: Assembly, skins: Sequence[str], carried: Sequence[Bodies],
+        everyone: Sequence[Bodies], others: tuple[Ref, ...],
+    ) -> None:  # fmt: skip
         """Add its terms for all skins and masses that a flow carries, at once; ``everyone``: its other masses."""
         raise NotImplementedError
 

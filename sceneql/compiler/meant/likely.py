@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from collections.abc import Mapping as Naming
 from collections.abc import Sequence as Sequenced
 from contextlib import suppress
@@ -49,13 +49,10 @@ OF_FORM = (
     "wrong-shape",
 )
 """Codes of errors of a value that may be meant for a field though it does not take it so."""
-LETTERS = "abcdefghijklmnopqrstuvwxyz"
 SHOWN = 60
 """Longest value that a message repeats behind the field that is meant."""
 USUAL_FORCE = "electrostatic"
 """The word of forces between charges."""
-NAMES = ("name", "id")
-"""Fields by which other programs name the items of a list."""
 
 
 def renamed(reader: Any, cls: type[BaseModel], name: str, node: Node) -> tuple[bool, str]:
@@ -350,61 +347,6 @@ def choice_meant(text: str, choices: Sequenced[str]) -> str | None:
     pieces = re.sub(r"[^a-z]+", " ", text.lower()).replace("upper", "top").replace("lower", "bottom").split()
     same = [one for one in choices if sorted(one.split()) == sorted(pieces)]
     return f"did you mean '{same[0]}'?" if len(same) == 1 else suggestion(text, choices)
-
-
-def listed(node: MappingNode, item: Any, what: str) -> str | None:
-    """The help where the items of a list of records stand under names."""
-    if not (isinstance(item, type) and issubclass(item, BaseModel)) or not node.entries:
-        return None
-    known = [kinds.written_name(name) for name in item.model_fields]
-    if not all(isinstance(one, MappingNode) and one.entries.keys() & set(known) for one in node.entries.values()):
-        return None
-    if node.entries.keys() & set(known):
-        return None
-    named = "name" in known
-    items = (f"name: {name}, {_inside(one)}" if named else _inside(one) for name, one in node.entries.items())
-    return f"it is a list: write `{what}: [{', '.join(f'{{{one}}}' for one in items)}]`"
-
-
-def by_name(node: Node, item: Any, parts: bool) -> str:
-    """The help where records that stand under names are a list, or are named without fields.
-
-    ``parts``: whether the names are those of parts.
-    """
-    sided = isinstance(item, type) and issubclass(item, BaseModel) and "near" in item.model_fields
-    if sided and isinstance(node, Scalar) and (every := instead("bare.boundary", node.text)) is not None:
-        return every
-    items = node.items if isinstance(node, Sequence) else []
-    texts = [one.span.text for one in items or [node]]
-    if parts and all(text.isidentifier() for text in texts):
-        told = ", ".join(f"{text}: {text.replace('_', ' ')}" for text in texts)
-        return f"write `{{{told}}}`, the name of each part before what is told of it"
-    record = isinstance(item, type) and issubclass(item, BaseModel)
-    texts = [f"{name}: {{{_inside(one, NAMES)}}}" for one in items if (name := _name_in(one))]
-    if record and items and len(texts) == len(items):
-        return f"write `{{{', '.join(texts)}}}`, the name of each before its fields"
-    if not record and len(items) > 1 and all(isinstance(one, Scalar) for one in items):
-        names = [one.span.text.rpartition(".")[2] for one in items]
-        own = names if len({*names}) == len(items) and all(map(str.isidentifier, names)) else [*LETTERS]
-        told = ", ".join(f"{name}: {one.span.text}" for name, one in zip(own, items, strict=False))
-        return f"each has a name of its own: write `{{{told}}}`"
-    first = items[0].span.text if items else "name"
-    first = first if first.isidentifier() else "name"
-    example = first_field(item) if record else "..."
-    if record and "of" in item.model_fields and first != "name":
-        example = f"{{of: {first}}}"
-    return f"write `{{{first}: {example}}}`, each entry under a name of its own"
-
-
-def _name_in(node: Node) -> str:
-    """The name that an item of a list gives itself as other programs do; empty for none."""
-    given = [node.entries[key] for key in NAMES if key in node.entries] if isinstance(node, MappingNode) else []
-    return given[0].text if given and isinstance(given[0], Scalar) else ""
-
-
-def _inside(node: Node, without: Collection[str] = ()) -> str:
-    fields = node.entries if isinstance(node, MappingNode) else {}
-    return ", ".join(f"{name}: {value.span.text}" for name, value in fields.items() if name not in without)
 
 
 def _taking(reader: Any, node: Node, cls: type[BaseModel]) -> Iterator[str]:
