@@ -33,10 +33,11 @@ def warn_of_falling_through(
     start: Any = Beginning(tasks)
     stand = {name: tasks[name].kind for name in standing(tasks)}
     solids = {
-        name: (kind, _box(kind, start))
+        name: kind
         for name, kind in stand.items()
         if tasks[name].span is not None and all(value.constant for value in values_of(kind))
     }
+    boxes: dict[str, Any] = {}
     for island in groups if 0 < len(solids) <= MOST_OBJECTS else ():
         for name in island.models:
             forces = [cast(Interaction, tasks[force].kind) for force, model in island.forces if model == name]
@@ -50,7 +51,7 @@ def warn_of_falling_through(
             if set(solids) <= known or not all(getattr(kind, "list", None) for kind in unknown):
                 continue  # where it meets what is hidden, or moves, is not known; single masses do not hold it up
             starts = starts_of(cast(Model, tasks[name].kind), tasks, start)[:MOST]
-            hit = _first_hit(starts, pull, end, solids, known, start)
+            hit = _first_hit(starts, pull, end, solids, boxes, known, start)
             if hit is not None and hit[0] not in known:
                 contact = next(iter(touched), None)
                 of_it = "no contact acts on it" if contact is None else f"'{contact}' is not of both"
@@ -113,7 +114,8 @@ def _first_hit(
     starts: Sequence[Start],
     pull: tuple[float, ...],
     end: float,
-    solids: Mapping[str, tuple[Any, Any]],
+    solids: Mapping[str, Any],
+    boxes: dict[str, Any],
     touched: Collection[str],
     start: Any,
 ) -> tuple[str, float] | None:
@@ -125,8 +127,10 @@ def _first_hit(
     hits = []
     for place, velocity, reach in starts:
         way = [tuple(p + v * t + 0.5 * g * t * t for p, v, g in zip(place, velocity, pull, strict=True)) for t in times]
-        for name, (solid, box) in solids.items():
-            inside = _inside(solid, box, way, reach if name in touched else 0.0, start)
+        for name, solid in solids.items():
+            if name not in boxes:
+                boxes[name] = _box(solid, start)
+            inside = _inside(solid, boxes[name], way, reach if name in touched else 0.0, start)
             if any(inside) and (name in touched or not inside[0]):
                 hits.append((times[inside.index(True)], name))
     return None if not hits else (min(hits)[1], min(hits)[0])
@@ -136,10 +140,11 @@ def _box(solid: Any, start: Any) -> Any:
     """Corners [m] of the box of a solid that stands; None where it is not known."""
     import numpy as np  # here, where a check needs it
 
-    try:
-        return solid.extent(np.eye(3, 4), start)
-    except UNKNOWN:
-        return None
+    with np.errstate(all="ignore"):
+        try:
+            return solid.extent(np.eye(3, 4), start)
+        except UNKNOWN:
+            return None
 
 
 def _inside(solid: Any, box: Any, way: Sequence[tuple[float, ...]], reach: float, start: Any) -> list[bool]:
