@@ -160,6 +160,9 @@ def _by_component(
     for key in node.entries:
         if key not in COMPONENTS:
             help = vector_meant_by(node, what) or suggestion(key, (*COMPONENTS, "keys"))
+            inner = node.entries[key]
+            if isinstance(inner, MappingNode) and any(one.endswith(" s") for one in inner.entries):
+                help = f"keys stand in `keys`: write `{what}: {{keys: {inner.span.text}}}`"
             if key == what and len(node.entries) == 1:
                 help = f"write the value alone, `{node.entries[key].span.text}`"
             message = f"{what} has the components x, y, z, not '{key}'"

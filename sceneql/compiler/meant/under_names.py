@@ -45,6 +45,10 @@ def by_name(node: Node, item: Any, parts: bool) -> str:
     if parts and all(text.isidentifier() for text in texts):
         told = ", ".join(f"{text}: {text.replace('_', ' ')}" for text in texts)
         return f"write `{{{told}}}`, the name of each part before what is told of it"
+    if parts and all(part.isidentifier() for text in texts for part in text.split(".")):
+        owners = dict.fromkeys(text.partition(".")[0] for text in texts)
+        told = ", ".join(f"{text}: {text.replace('_', ' ')}" for text in owners)
+        return f"parts are named as a whole, before what is told of each: write `{{{told}}}`"
     record = isinstance(item, type) and issubclass(item, BaseModel)
     texts = [f"{name}: {{{_inside(one, NAMES)}}}" for one in items if (name := _name_in(one))]
     if record and items and len(texts) == len(items):
