@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from sceneql.quantities.diagnostic import ScriptError
-from sceneql.quantities.dimension import DENSITY, ENERGY, LENGTH, MASS, TEMPERATURE, TIME, Dimension, suits
+from sceneql.quantities.dimension import DENSITY, ENERGY, LENGTH, MASS, PLAIN, TEMPERATURE, TIME, Dimension, suits
 from sceneql.quantities.expression import Expr, Link, Number, Symbol, Vector, walk
 from sceneql.quantities.instead import of_unit, unit_meant
 from sceneql.quantities.parser import parse_value
@@ -21,6 +21,7 @@ _MISSING = (
 )
 """(dimension, an example of it, its name) of what turns a quantity to one that goes by a similar name: kinematic
 viscosity to dynamic, conductivity to diffusivity."""
+_A_SECOND = re.compile(r"(\d+\.?\d*)\s*(?:1?/\s*s|Hz)")
 OF_METALS = 10.0
 """Conductivity [W/(m K)] from which on it is a metal's."""
 
@@ -39,7 +40,13 @@ def remedy(expr: Expr, wanted: Dimension | None) -> str | None:
         one = meant.items[0] if isinstance(meant, Vector) else meant
         if isinstance(one, Number) and suits(one.type.dimension, wanted):
             return f"two units have a sign between them: write `{text}`"
-    return _product(expr, wanted) or _factor(expr, wanted) or of_unit(here)
+    return _product(expr, wanted) or _factor(expr, wanted) or of_unit(here) or _counted(here, wanted)
+
+
+def _counted(text: str, wanted: Dimension | None) -> str | None:
+    """The help for what is counted in a second where it is a plain number: frames, `25 /s`."""
+    found = _A_SECOND.fullmatch(text)
+    return f"it has no unit: write `{found[1]}`" if found is not None and wanted == PLAIN else None
 
 
 def _product(expr: Expr, wanted: Dimension | None) -> str | None:
