@@ -70,7 +70,7 @@ def test_a_strip_is_rolled_up_to_a_ring_by_the_torque_of_one(tmp_path):
         f"loads: {{tip: {{where: x > 4.999, torque: [0 N*m, time*{-torque} N*m/s, 0 N*m]}}}}"
     )
     (end,) = rest(tmp_path, fields, ("end.position",))
-    assert abs(2 * end[0]) == pytest.approx(0.78e-3 * 10, abs=0.4e-3 * 10)
+    assert abs(2 * end[0]) < 1e-3 * 10
     assert abs(end[2]) == pytest.approx(10 / pi, rel=1e-3)
 
 
