@@ -25,7 +25,7 @@ HIDDEN = 0.8
 """Fraction of these, of those in the picture, from which on the subject counts as hidden."""
 MOSTLY = 0.5
 """Fraction of the frames, of those with the subject in the picture, beyond which a warning is told."""
-MOST = 20_000
+MOST = 2_000
 """Largest number of triangles, spheres or segments of a shape that is looked at: more cost time in every frame."""
 STEPS = 64
 """Places along a line of sight at which an implicit field is looked at."""
@@ -157,14 +157,9 @@ def _through_quadric(shape: Quadric, eyes: Floats, ends: Floats) -> Floats:
     """(n,) Whether lines of sight meet a quadric: the parts of the way in its box and in its convex surface overlap."""
     eye, end = apply(shape.to_local, eyes), apply(shape.to_local, ends)
     way, squares, linear = end - eye, np.array(shape.squares), np.array(shape.linear)
-    sides = np.stack([(np.array(side) - eye) / way for side in (shape.low, shape.high)])
-    flat = way == 0.0
-    out = flat & ((eye < shape.low) | (eye > shape.high))
-    enter = np.where(flat, -np.inf, sides.min(axis=0)).max(axis=1)
-    leave = np.where(out, -np.inf, np.where(flat, np.inf, sides.max(axis=0))).min(axis=1)
+    enter, leave = _through_box(eye, way, np.array(shape.low), np.array(shape.high))
     a, b = (squares * way * way).sum(axis=1), ((2.0 * squares * eye + linear) * way).sum(axis=1)
     c = (squares * eye * eye + linear * eye).sum(axis=1) + shape.constant
-    root = np.sqrt(b * b - 4.0 * a * c)
     root, at = np.sqrt(b * b - 4.0 * a * c), -c / b  # NaN where it passes by: no comparison holds then
     first = np.where(a > 0.0, (-b - root) / (2.0 * a), np.where(b < 0.0, at, -np.inf))
     last = np.where(a > 0.0, (-b + root) / (2.0 * a), np.where(b > 0.0, at, np.inf))
@@ -174,11 +169,22 @@ def _through_quadric(shape: Quadric, eyes: Floats, ends: Floats) -> Floats:
     return met
 
 
+def _through_box(eyes: Floats, ways: Floats, low: Floats, high: Floats) -> tuple[Any, Any]:
+    """(n,) Parts of lines of sight at which they enter a box and leave it; the first is larger where they miss it."""
+    sides = np.stack([(side - eyes) / ways for side in (low, high)])
+    flat = ways == 0.0
+    out = flat & ((eyes < low) | (eyes > high))
+    enter = np.where(flat, -np.inf, sides.min(axis=0)).max(axis=1)
+    return enter, np.where(out, -np.inf, np.where(flat, np.inf, sides.max(axis=0))).min(axis=1)
+
+
 def _through_triangles(corners: Floats, eyes: Floats, ends: Floats) -> Floats:
     """(n,) Whether lines of sight pass through any of the triangles (m, 3, 3) [m] (Moeller & Trumbore 1997)."""
     one, two = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    found = np.zeros(len(ends), dtype=bool)
-    for k, (eye, way) in enumerate(zip(eyes, ends - eyes, strict=True)):
+    ways, found = ends - eyes, np.zeros(len(ends), dtype=bool)
+    enter, leave = _through_box(eyes, ways, corners.min(axis=(0, 1)), corners.max(axis=(0, 1)))
+    for k in np.flatnonzero(np.maximum(enter, 0.0) <= np.minimum(leave, NEARLY)):
+        eye, way = eyes[k], ways[k]
         across = np.cross(way, two)
         scale, away = 1.0 / (one * across).sum(axis=1), eye - corners[:, 0]
         u, other = (away * across).sum(axis=1) * scale, np.cross(away, one)
