@@ -114,6 +114,15 @@ def two_ends(text: str) -> str | None:
     return f"{found[1]} {found[3]} {unit}".strip()
 
 
+def between_times(text: str) -> str | None:
+    """The help for two times with the sign of a range between them where a formula says when: ``1 s to 2 s``."""
+    ends = (two_ends(text) or "").split()
+    if len(ends) != 3 or ends[2] not in ("s", "ms", "min", "h"):
+        return None
+    low, high, unit = ends
+    return f"from when to when is two conditions: `(time > {low} {unit})*(time < {high} {unit})`"
+
+
 def mean_and_more(text: str) -> tuple[str, str, str] | None:
     """The mean, the deviation and the unit of ``2 +- 1 s``; None of other texts."""
     found = _ABOUT.fullmatch(text)

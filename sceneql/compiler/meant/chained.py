@@ -27,7 +27,7 @@ from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, same_as
 from sceneql.quantities.instead import instead
 from sceneql.quantities.literal import vector_meant
-from sceneql.quantities.spaced import mean_and_more, per_unit
+from sceneql.quantities.spaced import between_times, mean_and_more, per_unit
 from sceneql.quantities.span import Source
 from sceneql.quantities.units import format_quantity
 
@@ -123,7 +123,9 @@ def better_alone(
         found[before] = replace(found[before], help=f"what is counted has no unit: write `{counted[1]} /{unit}`")
     single = [mark.shape == () for mark in quantities(info)]
     if (help or "").startswith("two ends stand") and single and all(single):
-        found[before] = replace(found[before], help=middle_of_ends(name, node, ()) or help)
+        mean = middle_of_ends(name, node, ())
+        fits = mean is not None and not _errors(reader, mean.split("`")[1].partition(": ")[2], cls, name)
+        found[before] = replace(found[before], help=mean if fits else between_times(node.span.text) or help)
     if (help or "").endswith("a number for each axis"):
         found[before] = replace(found[before], help=along_default(node, info) or help)
     if help is not None or code not in ("wrong-shape", "dimension-mismatch"):

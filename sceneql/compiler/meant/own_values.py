@@ -36,7 +36,7 @@ def with_own(help: str, name: str, text: str) -> str:
     fits = [one for one in found if _type(one[2]) == own and (not vague or same_as(name, [one[1]]) is not None)]
     if HALF in help and own[0] == ():
         fits, text = [one for one in found if _type(one[2]) == own], _halved(text)
-    towards = [one for one in found if one[1] == DIRECTION and own == ((3,), LENGTH)]
+    towards = [one for one in found if one[1] == DIRECTION and own == ((3,), LENGTH, LENGTH.kind)]
     if towards and not fits:
         fits, text = towards, " ".join(re.findall(_NUMBER, text))
     if len(fits) != 1:
@@ -59,12 +59,18 @@ def in_si(text: str) -> list[float]:
     return [one.value for one in numbers if isinstance(one, Number)]
 
 
-def _type(text: str) -> tuple[Shape, Dimension | None] | None:
+def _type(text: str) -> tuple[Shape, Dimension | None, str] | None:
     """Shape and dimension of numbers with at most one unit; None of other texts."""
     value = _parsed(text)
     if isinstance(value, Vector):
-        return (len(value.items),), value.items[0].type.dimension
-    return (value.type.shape, value.type.dimension) if isinstance(value, Number) else None
+        return (len(value.items),), *_dimension(value.items[0])
+    return (value.type.shape, *_dimension(value)) if isinstance(value, Number) else None
+
+
+def _dimension(value: Expr) -> tuple[Dimension | None, str]:
+    """Dimension and kind: an angle is no plain number."""
+    dimension = value.type.dimension
+    return dimension, "" if dimension is None else dimension.kind
 
 
 def _parsed(text: str) -> Expr | None:
