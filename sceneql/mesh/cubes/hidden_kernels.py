@@ -76,7 +76,7 @@ def enough(steep, bent, h):
 
 @inlined
 def proved(code, constants, parts, scratch, second, x, y, z, half, negative, least):
-    """(whether f is proved to keep its sign in the box of half side ``half`` about a point, way, thickness, steep, bent).
+    """(whether f is proved to keep its sign within ``half`` of a point along each axis, way, thickness, steep, bent).
 
     By its range, by the mean value form, or, as in ``enough``, by ``least``, the least |f| at the box's corners.
     Without a proof, f may have the other sign only up to a ``thickness`` [m] from a face, ``way`` as ``bulged`` has it;
