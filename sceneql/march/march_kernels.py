@@ -48,6 +48,9 @@ steps that have hardly moved time; whether there are such kernels that act on sa
 one another in a whole step (Assembly.limit); how often the step to try next is halved for what exact contacts did in
 those before, which fixed steps forget by and by, and others after each."""
 
+UNREAD = -2
+"""LAST_STAGE of a method that leaves no rate at the end of a step, where none is asked for either."""
+
 SHORTEST = 1e-3
 """Part of a fixed step below which it is not halved any more."""
 LEAST_PART = 1e-9
@@ -310,6 +313,8 @@ def march(
             return status
         if counts[LAST_STAGE] >= 0:
             copy(work[counts[LAST_STAGE] * n :], rate1)
+        elif counts[LAST_STAGE] == UNREAD:
+            pass
         elif (alone and not later) or leaving.size > 0 or (counts[HELD] > 0 and counts[ORDER] > 1):
             # (Resting contacts of a first-order method may use the load at the step's start.)
             rate(t1, y1, rate1, floats, ints)
