@@ -25,6 +25,7 @@ from sceneql.flows.layout import (
     LED,
     MOVES,
     PERIODIC,
+    PLAIN,
     PLANS,
     PRESSURE,
     RATE,
@@ -179,20 +180,30 @@ def first_face(axis, j, k, ints):
 
 
 @lean_inlined
+def net(v, w, a, b, own, plain, more, count):
+    """Flow out on the high side of a row's cells less that in on the low side: to what there is, or alone."""
+    if plain:
+        area = a[0]
+        for i in range(count):
+            own[i] = (own[i] if more else 0.0) + (area * w[i] - area * v[i])
+    else:
+        for i in range(count):
+            own[i] = (own[i] if more else 0.0) + (b[i] * w[i] - a[i] * v[i])
+
+
+@lean_inlined
 def outflow_row(u, areas, own, j, k, ints):
     """What velocities u take out of each cell of row (j, k)."""
-    nx, around = ints[CELLS], ints[PERIODIC] == 1
+    nx, around, plain = ints[CELLS], ints[PERIODIC] == 1, ints[PLAIN] == 1
     low, _ = first_face(0, j, k, ints)
     v, w, a, b = u[low:], u[low + 1 :], areas[low:], areas[low + 1 :]
-    for i in range(nx - 1 if around else nx):
-        own[i] = b[i] * w[i] - a[i] * v[i]
+    net(v, w, areas if plain else a, b, own, plain, False, nx - 1 if around else nx)
     if around:
         own[nx - 1] = a[0] * v[0] - a[nx - 1] * v[nx - 1]
     for axis in range(1, ints[AXES]):
         low, up = first_face(axis, j, k, ints)
-        v, w, a, b = u[low:], u[low + up :], areas[low:], areas[low + up :]
-        for i in range(nx):
-            own[i] += b[i] * w[i] - a[i] * v[i]
+        a, b = (areas[ints[STARTS + axis] :] if plain else areas[low:]), areas[low + up :]
+        net(u[low:], u[low + up :], a, b, own, plain, True, nx)
 
 
 @lean(types.void(A, A, N, A, I))
