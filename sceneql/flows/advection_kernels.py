@@ -63,7 +63,8 @@ def passing(through, area, component, axis, place, j, k, out, ints):
     """What flows along an axis between the own cells of a row of a component's faces and those before them, ``place``
     being their number along it: the mean of the flows through the faces of both cells; of one, on the boundary.
 
-    ``through``: by face, which times ``area`` [m^2] is [m^3/s]. Along x of all places (the first two arguments of place are not read), else of one.
+    ``through``: by face, which times ``area`` is [m^3/s]. Along x of all places (the first two arguments of place are
+    not read), else of one.
     """
     nx, ny, _ = sides(axis, ints)
     own_nx, own_ny, _ = sides(component, ints)
@@ -216,6 +217,20 @@ def across_row(u, through, area, component, axis, place, j, k, flux, room, float
     carried(ints[SCHEME], flows, a, b, c, d, flux, nx)
 
 
+@lean_inlined
+def add_left(own, inverse, into, out, plain, count):
+    """Add what stays of momentum in the own cells of a row; ``plain``: but for the ends they are of one volume."""
+    if plain:
+        whole = inverse[1]
+        for i in range(1, count - 1):
+            own[i] += (into[i] - out[i]) * whole
+        for i in range(0, count, count - 1):
+            own[i] += (into[i] - out[i]) * inverse[i]
+    else:
+        for i in range(count):
+            own[i] += (into[i] - out[i]) * inverse[i]
+
+
 @lean(TERM, inner=True)
 def advect(t, y, rate, floats, ints):
     """V du/dt = momentum in minus momentum out; row by row, each of whose sides is computed once."""
@@ -240,8 +255,9 @@ def advect(t, y, rate, floats, ints):
                 row = ints[STARTS + component] + nx * (j + ny * k)
                 own, inverse = more[row : row + nx], inverses[row : row + nx]
                 along_row(u, through, areas[0] if plain else 1.0, component, j, k, rows, floats, ints)
-                for i in range(nx):
-                    own[i] += (rows[i] - rows[i + 1]) * inverse[i]
+                inner = component == 0 or ints[PERIODIC + component] == 1
+                alike = plain and nx > 2 and (inner or 0 < (j if component == 1 else k) < ints[CELLS + component])
+                add_left(own, inverse, rows, rows[1:], alike, nx)
                 for axis in range(1, ints[AXES]):
                     area = areas[ints[STARTS + axis]] if plain else 1.0
                     place, slot = (j, 0) if axis == 1 else (k, wide + nx * j)
@@ -249,8 +265,7 @@ def advect(t, y, rate, floats, ints):
                     if place == 0:
                         across_row(u, through, area, component, axis, 0, j, k, low, rows, floats, ints)
                     across_row(u, through, area, component, axis, place + 1, j, k, flux, rows, floats, ints)
-                    for i in range(nx):
-                        own[i] += (low[i] - flux[i]) * inverse[i]
+                    add_left(own, inverse, low, flux, alike, nx)
                     for i in range(nx):
                         low[i] = flux[i]
 

@@ -225,9 +225,16 @@ def outflow(x, out, what, floats, ints):
 
 
 @lean_inlined
-def lessen(u, scales, factor, here, before, has_here, has_before, count):
-    """A row of velocities, less the gradient between two rows of pressures, one of which may be missing: 0."""
-    if has_here and has_before:
+def lessen(u, scales, factor, here, before, has_here, has_before, plain, count):
+    """A row of velocities, less the gradient between two rows of pressures, one of which may be missing: 0.
+
+    ``plain``: all scales of the row are the same.
+    """
+    if plain:
+        scale = factor * scales[0]
+        for i in range(count):
+            u[i] -= scale * (here[i] - before[i])
+    elif has_here and has_before:
         for i in range(count):
             u[i] -= factor * scales[i] * (here[i] - before[i])
     else:
@@ -239,13 +246,13 @@ def lessen(u, scales, factor, here, before, has_here, has_before, count):
 @lean_inlined
 def lessen_row(u, scales, q, factor, j, k, ints):
     """`less_gradient` at the faces on the low sides of the cells of row (j, k), and at the high ends of the box."""
-    nx, ny = ints[CELLS], ints[CELLS + 1]
+    nx, ny, plain = ints[CELLS], ints[CELLS + 1], ints[PLAIN] == 1
     around, row = ints[PERIODIC] == 1, nx * (j + ny * k)
     low, _ = first_face(0, j, k, ints)
-    lessen(u[low + 1 :], scales[low + 1 :], factor, q[row + 1 :], q[row:], True, True, nx - 1)
-    lessen(u[low:], scales[low:], factor, q[row:], q[row + nx - 1 :], True, around, 1)
+    lessen(u[low + 1 :], scales[low + 1 :], factor, q[row + 1 :], q[row:], True, True, plain, nx - 1)
+    lessen(u[low:], scales[low:], factor, q[row:], q[row + nx - 1 :], True, around, False, 1)
     if not around:
-        lessen(u[low + nx :], scales[low + nx :], factor, q, q[row + nx - 1 :], False, True, 1)
+        lessen(u[low + nx :], scales[low + nx :], factor, q, q[row + nx - 1 :], False, True, False, 1)
     for axis in range(1, ints[AXES]):
         low, up = first_face(axis, j, k, ints)
         place, count = (j if axis == 1 else k), ints[CELLS + axis]
@@ -253,9 +260,10 @@ def lessen_row(u, scales, q, factor, j, k, ints):
         before = q[row + (count - 1) * stride :] if place == 0 else q[row - stride :]
         if place == 0 and not periodic:
             before = q[row:]
-        lessen(u[low:], scales[low:], factor, q[row:], before, True, place > 0 or periodic, nx)
+        inner = place > 0 or periodic
+        lessen(u[low:], scales[low:], factor, q[row:], before, True, inner, plain and inner, nx)
         if place == count - 1 and not periodic:
-            lessen(u[low + up :], scales[low + up :], factor, q, q[row:], False, True, nx)
+            lessen(u[low + up :], scales[low + up :], factor, q, q[row:], False, True, False, nx)
 
 
 @lean(types.void(A, A, F, A, I), inner=True)

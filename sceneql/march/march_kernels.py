@@ -15,6 +15,7 @@ import sceneql.system.channels as channels
 from sceneql.compiled import pointers_kernels as pointers
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, DENSE, FREE_MOTION, GAP, IMPACT, TIED_DRIFT, A, F, I
+from sceneql.system.stepping import UNREAD
 
 T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, LEAST, CLOCKS = range(9)
 """Ends of the last step [s]; the step to try next, or the fixed one [s]; the last error; largest step [s]; largest |y|;
@@ -47,9 +48,6 @@ kernels that act after steps (Assembly.after_step), and whether they changed any
 steps that have hardly moved time; whether there are such kernels that act on samples, too; whether surfaces may pass
 one another in a whole step (Assembly.limit); how often the step to try next is halved for what exact contacts did in
 those before, which fixed steps forget by and by, and others after each."""
-
-UNREAD = -2
-"""LAST_STAGE of a method that leaves no rate at the end of a step, where none is asked for either."""
 
 SHORTEST = 1e-3
 """Part of a fixed step below which it is not halved any more."""

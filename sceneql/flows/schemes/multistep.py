@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.flows.layout import PLAN
 from sceneql.system import Control, Method, Needs, Prepared, Stepper
+from sceneql.system.stepping import UNREAD
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -180,7 +181,6 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
     from sceneql.flows.schemes.multistep_kernels import ARRAYS
     from sceneql.flows.schemes.operators_kernels import HEAD, OPERATOR
-    from sceneql.march.march_kernels import UNREAD
 
     flow, operators, velocities, tables, text = operators_of(system)
     head = (*stepper.method.numbers, len(operators), HEAD + OPERATOR * len(operators), velocities)

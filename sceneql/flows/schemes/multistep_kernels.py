@@ -22,7 +22,20 @@ from numba import types
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.flows.layout import AREAS, AT, AXES, CELLS, FACES, ITERATES, PERIODIC, PRESSURE, SCALES, SKIP, VELOCITY, WORK
+from sceneql.flows.layout import (
+    AREAS,
+    AT,
+    AXES,
+    CELLS,
+    FACES,
+    ITERATES,
+    PERIODIC,
+    PRESSURE,
+    SCALES,
+    SKIP,
+    VELOCITY,
+    WORK,
+)
 from sceneql.flows.projection_kernels import (
     by_transform,
     first_face,
@@ -45,7 +58,7 @@ from sceneql.flows.schemes.operators_kernels import (
     solve,
     tally,
 )
-from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I, N
+from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I
 
 CHORIN, CNAB2, SBDF2 = range(3)
 SCHEME, HAS_BEFORE, TURN, _, FLOW_AT, VELOCITIES = range(HEAD)
@@ -95,9 +108,7 @@ def explicit(y1, y0, before, latest, n_before, factors, pressure, part, floats, 
             for number in range(ints[AXES] + 1):
                 begin, count = piece(number, j, last, k, ints)
                 begin += at
-                combined(
-                    y1[begin:], y0[begin:], before[begin:], latest[begin:], n_before[begin:], factors, count
-                )
+                combined(y1[begin:], y0[begin:], before[begin:], latest[begin:], n_before[begin:], factors, count)
             if part != 0.0:
                 for row in range(j, last):
                     lessen_row(u, scales, pressure, part, row, k, ints)
