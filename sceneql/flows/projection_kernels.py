@@ -10,7 +10,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.flows.box_modes_kernels import through_modes
+from sceneql.flows.box_modes_kernels import along, through_modes, through_modes_of_rows
 from sceneql.flows.layout import (
     AREAS,
     AT,
@@ -26,6 +26,7 @@ from sceneql.flows.layout import (
     MOVES,
     PERIODIC,
     PLAIN,
+    PLAN,
     PLANS,
     PRESSURE,
     RATE,
@@ -60,6 +61,22 @@ def by_transform(x, floats, ints):
     nx, ny, nz = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2]
     spectrum, none = floats[ints[SPECTRUM] : ints[SPECTRUM] + nx * ny * nz], floats[:0]
     through_modes(x, nx, ny, nz, floats, floats[ints[WORK] :], ints[PLANS:], spectrum, none, none, none, 0.0, 0.0)
+
+
+@lean_inlined
+def rows_of_box(x, first, count, forward, floats, ints):
+    """Transform rows of cells along x, forward or back, which is the beginning and the end of `by_transform`."""
+    nx = ints[CELLS]
+    along(x[first * nx :], nx, 1, count, nx, 1, 0, forward, floats, floats[ints[WORK] :], ints[PLANS : PLANS + PLAN])
+
+
+@lean(types.void(A, A, I), inner=True)
+def by_transform_of_rows(x, floats, ints):
+    """What stands between."""
+    nx, ny, nz = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2]
+    spectrum, none = floats[ints[SPECTRUM] : ints[SPECTRUM] + nx * ny * nz], floats[:0]
+    scratch, plans = floats[ints[WORK] :], ints[PLANS:]
+    through_modes_of_rows(x, nx, ny, nz, floats, scratch, plans, spectrum, none, none, none, 0.0, 0.0)
 
 
 @lean_inlined

@@ -10,43 +10,16 @@ its divergence; the pressure grows by what that takes away, less viscosity times
 is asked for between steps; then the tables. ``numbers``: [scheme, 1 if there is a step before, how often a step went on
 from the one before, number of operators, where the flow's integers begin, operators of velocities, which come first],
 then the operators (operators_kernels).
-
-Arrays of the state's size are passed over as seldom as may be: each pass does all it can to a band of rows that the
-cache holds, since larger states are as slow as memory is.
 """
 
 import math
 
-from numba import types
-
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.flows.layout import (
-    AREAS,
-    AT,
-    AXES,
-    CELLS,
-    FACES,
-    ITERATES,
-    PERIODIC,
-    PRESSURE,
-    SCALES,
-    SKIP,
-    VELOCITY,
-    WORK,
-)
-from sceneql.flows.projection_kernels import (
-    by_transform,
-    first_face,
-    less_gradient,
-    lessen_row,
-    outflow,
-    outflow_row,
-    project,
-    pushed_at,
-    rid,
-)
+from sceneql.flows.layout import AT, CELLS, ITERATES, PRESSURE, SKIP, VELOCITY, WORK
+from sceneql.flows.projection_kernels import by_transform_of_rows, less_gradient, outflow, project, rid
+from sceneql.flows.schemes.bands_kernels import explicit, finish, gather
 from sceneql.flows.schemes.operators_kernels import (
     EXACT,
     HEAD,
@@ -58,7 +31,7 @@ from sceneql.flows.schemes.operators_kernels import (
     solve,
     tally,
 )
-from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I
+from sceneql.system.signatures_kernels import DENSE, STEP
 
 CHORIN, CNAB2, SBDF2 = range(3)
 SCHEME, HAS_BEFORE, TURN, _, FLOW_AT, VELOCITIES = range(HEAD)
@@ -67,92 +40,6 @@ GOES_ON, REPEATS, BEGINS = range(3)
 ARRAYS = 11
 SMALL = 1e-10
 """Residual of implicit parts, in parts of the right side."""
-BAND = 4096
-"""Cells of a band of rows."""
-
-
-@lean_inlined
-def piece(number, first, last, k, ints):
-    """(first, number) of the faces of component ``number`` on the low sides of the cells of rows from ``first`` to
-    before ``last`` of layer k, with those at the high end of the box; the number AXES means those along z there."""
-    axis, nx, ny = min(number, ints[AXES] - 1), ints[CELLS], ints[CELLS + 1]
-    start, up = first_face(axis, first, k, ints)
-    more = 1 if axis == 1 and last == ny and ints[PERIODIC + 1] == 0 else 0
-    wide = nx + 1 if axis == 0 and ints[PERIODIC] == 0 else nx
-    if number == axis:
-        return start, wide * (last - first + more)
-    ends = axis == 2 and k == ints[CELLS + 2] - 1 and ints[PERIODIC + 2] == 0
-    return start + up, (wide * (last - first) if ends else 0)
-
-
-@lean_inlined
-def combined(y1, y0, before, latest, n_before, factors, count):
-    """The known part of a row's right side."""
-    first, second, new, former = factors
-    for k in range(count):
-        y1[k] = first * y0[k] + second * before[k] + new * latest[k] + former * n_before[k]
-
-
-@lean(types.void(A, A, A, A, A, types.UniTuple(F, 4), A, F, A, I), inner=True)
-def explicit(y1, y0, before, latest, n_before, factors, pressure, part, floats, ints):
-    """y1 = the sum of four states, less part times the gradient of the pressure."""
-    at, faces, ny = ints[AT], ints[FACES], ints[CELLS + 1]
-    u, scales = y1[at : at + faces], floats[ints[SCALES] : ints[SCALES] + faces]
-    combined(y1, y0, before, latest, n_before, factors, at)
-    end = at + faces
-    combined(y1[end:], y0[end:], before[end:], latest[end:], n_before[end:], factors, y0.size - end)
-    rows = max(1, BAND // ints[CELLS])
-    for k in range(ints[CELLS + 2]):
-        for j in range(0, ny, rows):
-            last = min(ny, j + rows)
-            for number in range(ints[AXES] + 1):
-                begin, count = piece(number, j, last, k, ints)
-                begin += at
-                combined(y1[begin:], y0[begin:], before[begin:], latest[begin:], n_before[begin:], factors, count)
-            if part != 0.0:
-                for row in range(j, last):
-                    lessen_row(u, scales, pressure, part, row, k, ints)
-
-
-@lean(types.void(A, A, A, A, I), inner=True)
-def gather(y1, gathered, q, floats, ints):
-    """What flows out of cells, and the same less than 0, which becomes the pressure."""
-    nx, ny, faces = ints[CELLS], ints[CELLS + 1], ints[FACES]
-    u, areas = y1[ints[AT] : ints[AT] + faces], floats[ints[AREAS] : ints[AREAS] + faces]
-    pushed = pushed_at(VELOCITY, ints)
-    for k in range(ints[CELLS + 2]):
-        for j in range(ny):
-            row = nx * (j + ny * k)
-            own, less = gathered[row : row + nx], q[row : row + nx]
-            outflow_row(u, areas, own, j, k, ints)
-            if pushed >= 0:
-                for i in range(nx):
-                    own[i] -= floats[pushed + row + i]
-            for i in range(nx):
-                less[i] = -own[i]
-
-
-@lean(types.void(A, A, A, A, A, A, F, F, A, I), inner=True)
-def finish(y1, end, q, gathered, pressure, pressure_after, part, damped, floats, ints):
-    """Take the gradient of q from y1, which is then remembered in ``end``, and put the pressure forward."""
-    at, faces, nx, ny = ints[AT], ints[FACES], ints[CELLS], ints[CELLS + 1]
-    u, scales = y1[at : at + faces], floats[ints[SCALES] : ints[SCALES] + faces]
-    for c in range(at):
-        end[c] = y1[c]
-    for c in range(at + faces, y1.size):
-        end[c] = y1[c]
-    rows = max(1, BAND // nx)
-    for k in range(ints[CELLS + 2]):
-        for j in range(0, ny, rows):
-            last = min(ny, j + rows)
-            for row in range(j, last):
-                lessen_row(u, scales, q, 1.0, row, k, ints)
-            for number in range(ints[AXES] + 1):
-                begin, count = piece(number, j, last, k, ints)
-                for f in range(at + begin, at + begin + count):
-                    end[f] = y1[f]
-            for c in range(nx * (j + ny * k), nx * (last + ny * k)):
-                pressure_after[c] = pressure[c] + (q[c] * part - damped * gathered[c])
 
 
 @lean(DENSE)
@@ -262,7 +149,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             pressure_after[c] = pressure[c] + (q[c] * part - damped * gathered[c])
     else:
         gather(y1, gathered, q, floats, one)
-        by_transform(q, floats, one)
+        by_transform_of_rows(q, floats, one)
     for number in range(numbers[OPERATORS]):
         tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
     if one[ITERATES] > 0:
