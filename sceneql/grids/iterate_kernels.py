@@ -34,7 +34,7 @@ def residual(n, a, volume, base, y, slope, r, d):
 
 @lean_inlined
 def worst(volume, r):
-    """The residual that the largest cell would have if it were changed as much as the cell that its own changes most."""
+    """The residual that the largest cell would have if it changed as much as the cell whose own changes it most."""
     most = largest = 0.0
     for c in range(r.size):
         if volume[c] > 0.0:
