@@ -13,6 +13,7 @@ from sceneql.field.tape.builder import TapeBuilder
 from sceneql.field.tape.own_coordinates import in_own_coordinates
 from sceneql.frame import Implicit
 from sceneql.report.explain import explain, text
+from sceneql.run.run import Run
 from sceneql.words.objects.blobby import Blobby
 from stage import WHITE, frame, sun
 
@@ -88,3 +89,19 @@ def test_explain_tells_what_is_made_once_and_what_each_frame(graph):
     assert plan["changing"] == {"torus": ["rotation"], "blobs": ["points"], "ball": [], "both": ["of"]}
     anew = "blobs by its points; torus by its rotation; both by its of"
     assert f"\nmade once: ball\neach frame anew: {anew}\n" in text(plan)
+
+
+def test_skeletons_of_a_group_are_not_mistaken_for_each_other(tmp_path):
+    """Copies in the group's material take each other's place in memory; a skeleton was found by it, so that one object
+    was drawn as another."""
+    path = tmp_path / "scene.yaml"
+    lines = ["objects:", "  pair:", "    group:", "      material: {glossy: {}}", "      children:"]
+    for count in range(1, 5):
+        points = ", ".join(f"{k} 0 0 m" for k in range(count))
+        lines.append(f"        n{count}: {{blobby: {{skeleton: [{{points: [{points}]}}]}}}}")
+    path.write_text("\n".join([*lines, "outputs: {still: {image: {size: 32 32}}}"]))
+    moment = Run(pipeline.load(path)).at(0.0)
+    pair = moment.run.graph.tasks["pair"].kind
+    kept = [child for _, child in pair._objects(moment)]
+    counts = [len(kept.pop(0).model_copy().parts(moment).weights) for _ in range(4)]
+    assert counts == [1, 2, 3, 4]

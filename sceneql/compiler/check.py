@@ -23,6 +23,7 @@ from sceneql.compiler.meant.unknown_part import (
     part_meant,
     several_meant,
     warn_of_another,
+    word_for_name,
 )
 from sceneql.compiler.names import Names, Parsed
 from sceneql.compiler.over_time import check_instants
@@ -316,7 +317,7 @@ class _Checker:
                 return None  # its word is reported there
             if name in self.entries and self.family(name) in (mark.family, mark.also):
                 return Ref(name, node.span)
-            if name not in self.entries and self.catalogue.load(mark.family, node.text) is not None:
+            if self.catalogue.load(mark.family, node.text) is not None:  # an object called `mirror` hides no material
                 warn_of_another(node, mark.family, entry.name, self.entries, self.family_of, self.found)
                 in_place = Entry(anonymous, node.text, None, node.span, node.span, entry.scope)
                 return self._in_place(in_place, mark.family)
@@ -325,7 +326,8 @@ class _Checker:
                 return self._in_place(Entry(name, OPTIONAL[name], None, node.span, node.span, None), "objects")
             self._unknown(node, name, mark)
             return None
-        if isinstance(node, MappingNode) and len(node.entries) == 1:
+        named = word_for_name(anonymous, node, mark, self.catalogue)
+        if isinstance(node, MappingNode) and len(node.entries) == 1 and not named:
             (word, fields), (key,) = next(iter(node.entries.items())), node.keys.values()
             scope = entry.scope if node.index is None else Scope({}, dict([node.index]), entry.scope)
             return self._in_place(Entry(anonymous, word, fields, node.span, key.span, scope), mark.family)
@@ -337,7 +339,7 @@ class _Checker:
             return None
         help = several_meant(node, mark, entry, self.catalogue) if isinstance(node, SequenceNode) else None
         if isinstance(node, MappingNode):
-            help = word_having(node, mark.family, self.catalogue)
+            help = named or word_having(node, mark.family, self.catalogue)
         self.found.error("entry-shape", message, node.span, help=help)
         return None
 

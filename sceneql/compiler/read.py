@@ -84,18 +84,22 @@ class Reader:
         ok, other = True, False
         got: dict[str, Any] = {}
         mistaken: set[str | None] = set()
+        shown: set[str] = set()
         if isinstance(node, MappingNode):
             known = [kinds.written_name(name) for name in cls.model_fields]
             counter = node.entries.get("repeat") if "repeat" not in known else None
             number = counter.entries.get("as") if isinstance(counter, MappingNode) else None
             if isinstance(number, Scalar):  # the copies' number is not known, which the field's error tells
                 self.names.broken.add(number.text)
+            before = len(self.found.found)
             ok = report_unknown(node, known, title, self.found, **likely.asked(self, cls))
             ok = ok and not node.partial
             unknown = [name for name in node.entries if name not in known]
             alone = len(unknown) > 1 or len(written) == 1  # another thing may well be meant
             other = alone and all(instead(f"field.{title}", one) for one in unknown) and bool(unknown)
             mistaken = likely.meant(self, cls, node)
+            helps = [one.help or "" for one in self.found.found[before:]]
+            mistaken |= (shown := {name for name in known for help in helps if f"`{name}: " in help})
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)
             if name not in written:
@@ -120,6 +124,9 @@ class Reader:
             except Unreadable:
                 ok = False
                 improve(self, written, cls, name, title, before)
+                errors = self.found.found[before:]
+                if name in shown and [one.code for one in errors] == ["wrong-shape"]:
+                    del self.found.found[before:]  # an unknown field's help writes it anew
         if not ok:
             raise Unreadable
         return self._some(validated(cls, got, node, span, self.found))
@@ -262,6 +269,8 @@ class Reader:
                 if f"{text}p" in map(str, choices)
                 else likely.choice_meant(text, list(map(str, choices)))
             )
+            if text.isdecimal() and hint != f"write `{text}p`":
+                hint = f"write `{text} {max(2, 2 * round(int(text[:6]) * 9 / 32))}`, its width and its height"
             hint = f"write `{' '.join(several)}`" if len(several) > 1 and "".join(several).isdecimal() else hint
             raise self._fail("unknown-choice", f"{what} is {other} or one of {every}, not '{text}'", node.span, hint)
         hint = likely.choice_meant(text, [str(c) for c in choices]) or f"one of {every}"

@@ -47,34 +47,6 @@ OF_SECTIONS = (
     ("bare.law", "rubber elastomer silicone", "rubber is `{neo_hookean: {modulus: 1 MPa, poisson: 0.49}}`"),
     ("bare.law", "jelly gel soft foam flesh", "jelly is `{neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`"),
     ("bare.law", "wood plastic stiff", "wood is `{linear: {modulus: 10 GPa, poisson: 0.3}}`"),
-    ("cameras", "isometric iso axonometric", "write `{orthographic: {look_along: -1 -0.8 -1}}`"),
-    (
-        "cameras",
-        "top front side left right above",
-        "write `{orthographic: {look_along: 0 -1 0}}` from above, `0 0 -1` from the front, `-1 0 0` from the right",
-    ),
-    (
-        "forces",
-        "buoyancy archimedes lift",
-        "of a body write how it is pushed up by place, `{force: {components: [0, where(y < 0, 1000, 0), 0]}}`; a `flow`"
-        " has its `buoyancy`",
-    ),
-    (
-        "forces",
-        "lennard_jones lennardjones lj van_der_waals morse cohesion attraction",
-        "between all masses there are `mutual_gravity`, which draws them together, `repulsion` and `electrostatic`",
-    ),
-    (
-        "forces",
-        "magnet magnetism lorentz",
-        "write `{magnetic: {field: 0 0 1 T, charge: 1 C}}`: `sceneql words magnetic`",
-    ),
-    (
-        "models",
-        "sph smoke fire gas fluid_particles flip mpm",
-        "a fluid is a `flow`, smoke a `diffusion` with `drift: {by: FLOW}`, and sparks and drops are `particles` with"
-        " `emit`",
-    ),
     (
         "field.blobby",
         "position pos location center centre",
@@ -217,22 +189,6 @@ OF_SECTIONS = (
         "free neumann insulated adiabatic reflecting noflux no_flux no_slip noslip walls wall",
         "so it is where nothing is said: leave it out",
     ),
-    (
-        "objects",
-        "cone pyramid frustum",
-        "a cone is a cylinder that is tapered, `{taper: {of: {cylinder: {height: 2 m}}, factor: 0.1}}`",
-    ),
-    ("collider", "ground", "what masses touch is the `floor`: write `between: [ball, floor]`"),
-    (
-        "overlays",
-        "timer clock time stopwatch counter timestamp",
-        'a caption tells the time: `{caption: {text: "t = {time:.1f s}"}}`',
-    ),
-    (
-        "overlays",
-        "axes axis grid ruler scale_bar scalebar compass gizmo",
-        "there is none: arrows and tubes among the `objects` show axes, `{arrow: {vector: 1 0 0 m}}`",
-    ),
     ("field.implicit", "box", "write `bounds: {box: [-1 -1 -1, 1 1 1]}`, the low and the high corner"),
     ("field.implicit", "ball sphere", "write `bounds: {ball: 1.5}`, the radius about the origin"),
     ("field.coil", "thickness width wire_radius line_width", "half of how thick the wire is is `wire: 1 cm`"),
@@ -274,11 +230,6 @@ OF_SECTIONS = (
         "field.outline",
         "depth height extrude thickness_z",
         "it is flat; a body comes in a file, `{mesh: {file: part.stl}}`, or is made by `union` and `intersection`",
-    ),
-    (
-        "materials",
-        "image texture bitmap photo picture map",
-        "no picture is read here: write a color, or `checker`, or a color that is a formula of x, y, z",
     ),
     (
         "field.objects",

@@ -14,6 +14,8 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler.annotations import unwrap
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.meant.own_values import in_si
+from sceneql.compiler.meant.values_elsewhere import quantities_fitting
 from sceneql.compiler.names import Names
 from sceneql.kinds import Kind
 from sceneql.language.in_group import in_group
@@ -31,6 +33,8 @@ ANGLES = ("angle", "launch_angle", "elevation", "theta")
 _EQUATION = re.compile(r"(?:d\(?(\w+)\)?/dt|(\w+)'|(\w+)_dot)\s*=\s*(.+)")
 SEVERAL = 2
 """Least number of fields that tell the field that they stand in."""
+PUSH = "push"
+"""Name of a force in examples."""
 SHOWN = 300
 """Longest value that a message repeats."""
 
@@ -45,7 +49,7 @@ def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> st
             word = cls.__module__.rpartition(".")[2]
             return f"write its sizes as they shall be, or let a group scale it: `{in_group(word, node.entries)}`"
         return balls_of(reader.names, node)
-    told = _by_names(reader, cls, name, node) or _inside_one(cls, name, node)
+    told = _by_names(reader, cls, name, node) or _inside_one(cls, name, node) or _of_force(reader, cls, name, node)
     return told or _of_one(reader, cls, name, node) or _system(known, name, node) or _thrown(known, name, node)
 
 
@@ -139,6 +143,31 @@ def _of_one(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str 
             place = f"{reader.owner}.one.position"
             return f"it is told of each: write `{field}: {{one: {{{text}}}}}`; its place is then `{place}`"
     return None
+
+
+def _of_force(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:
+    """The help for a force's word, or one that means it, as a field of a model: ``torque: 0 3 0 N*m``.
+
+    With the value where the force has one field for it; of a torque's size alone, about y.
+    """
+    catalogue, value = reader.names.catalogue, node.entries[name]
+    word = same_as(name, catalogue.words("forces")) if issubclass(cls, kinds.Model) else None
+    force = None if word is None else catalogue.load("forces", word)
+    if force is None or not isinstance(value, Scalar) or "." in reader.owner:
+        return None
+    fields = list(quantities_fitting(reader, value, force.model_fields))
+    components = dict(force.model_fields).get("components")
+    text = value.span.text
+    if components is not None and (size := in_si(text)):
+        fields, many = ["components"], [f"{number:g}" for number in size]
+        text = f"[{', '.join(many if len(many) > 1 else ['0', many[0], '0'])}]"
+    if len(fields) != 1:
+        return None
+    told = f"{{{word}: {{{kinds.written_name(fields[0])}: {text}, on: [{reader.owner}]}}}}"
+    others = {one: entry for one, entry in reader.names.parts.items() if catalogue.load("forces", entry.word)}
+    listed = all(one == entry.word and entry.fields is None for one, entry in others.items())
+    section = f"[{', '.join([*others, told])}]" if listed else f"{{..., {PUSH}: {told}}}"
+    return f"forces are a section of their own: write `forces: {section}`"
 
 
 def _system(known: Collection[str], name: str, node: Mapping) -> str | None:

@@ -22,6 +22,7 @@ from sceneql.compiler.annotations import example_of, first_field, is_fixed, mark
 from sceneql.compiler.meant.by_record import by_record
 from sceneql.compiler.meant.chained import mended
 from sceneql.compiler.meant.own_examples import own_example
+from sceneql.compiler.meant.own_values import with_own
 from sceneql.compiler.meant.quantity_help import NAME, TRUE, other_output
 from sceneql.compiler.meant.together import together
 from sceneql.compiler.meant.unknown import meant_field
@@ -29,7 +30,7 @@ from sceneql.compiler.meant.values_elsewhere import along_default, quantities_fi
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
-from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, suggestion
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, same_as, suggestion
 from sceneql.quantities.instead import instead
 
 _NAMES = re.compile(rf"{NAME}(?:\s*[-+&|*/,]\s*{NAME})+")
@@ -42,6 +43,7 @@ OF_FORM = (
     "rotation-shape",
     "syntax",
     "unit-needed",
+    "unknown-choice",
     "unknown-color",
     "unknown-output",
     "unknown-unit",
@@ -51,6 +53,8 @@ OF_FORM = (
 """Codes of errors of a value that may be meant for a field though it does not take it so."""
 SHOWN = 60
 """Longest value that a message repeats behind the field that is meant."""
+LAW = "write `{neo_hookean: {modulus: 0 Pa, poisson: 0.45}}`"
+"""The usual law of an elastic solid."""
 USUAL_FORCE = "electrostatic"
 """The word of forces between charges."""
 
@@ -191,13 +195,16 @@ def _for_each(reader: Any, name: str) -> str | None:
 
 def _of_contact(reader: Any, cls: type[BaseModel], name: str, text: str) -> str | None:
     """The help for a field of a contact that the script has, in another part: ``restitution`` of a body."""
-    having = [] if reader.names.catalogue is None else reader.names.catalogue.having(name)
-    words = [word for family, word in having if family == "contacts"]
+    if not issubclass(cls, kinds.Kind) or cls.family not in ("models", "objects") or reader.names.catalogue is None:
+        return None
     for part, entry in reader.names.parts.items():
-        if entry.word in words and issubclass(cls, kinds.Kind) and cls.family in ("models", "objects"):
+        contact = reader.names.catalogue.load("contacts", entry.word)
+        known = [] if contact is None else [kinds.written_name(key) for key in contact.model_fields]
+        field = same_as(name, known) if cls.family == "models" else name if name in known else None
+        if field is not None:
             inner = "" if entry.fields is None else "..., "
             own = f"{part}: " if part != entry.word else ""
-            told = f"{own}{{{entry.word}: {{{inner}{name}: {text}}}}}"
+            told = f"{own}{{{entry.word}: {{{inner}{field}: {text}}}}}"
             return f"'{part}' has it, the contact of the script: write `{told}` there"
     return None
 
@@ -245,6 +252,8 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     if node.text.lower() in TRUE:
         return f"write `{first_field(cls)}`"
     if "neo_hookean" in cls.model_fields and (law := instead("bare.law", node.text)) is not None:
+        return law
+    if "neo_hookean" in cls.model_fields and (law := with_own(LAW, "modulus", node.text)) != LAW:
         return law
     ends = "bare" if "value" in cls.model_fields else "bare.wall" if "wall" in cls.model_fields else ""
     if (held := instead(ends, node.text)) is not None:

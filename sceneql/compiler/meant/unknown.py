@@ -13,6 +13,7 @@ from pydantic import BaseModel
 
 from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.meant.own_values import with_own
 from sceneql.compiler.meant.together import filled, together
 from sceneql.compiler.names import Vocabulary
 from sceneql.compiler.vector_fields import ENDS
@@ -39,6 +40,8 @@ OFF = ("0", "0.0", "no", "false")
 """Texts of a field that says that something is not."""
 SHOWN = 160
 """Longest list of instances that a message repeats."""
+WITHOUT = "\0"
+"""What lets helps differ that tell of no remedy, and so do not make one mistake of two."""
 FEW = 4
 """Largest number of words with a field by which it is told what has that field."""
 
@@ -71,6 +74,7 @@ def report_unknown(
     """
     offer = renamed or (lambda field, value: (True, f"did you mean '{field}'?"))
     unknown = [name for name in node.entries if name not in known]
+    told: dict[str, list[str]] = {}
     for name in unknown:
         help = together(name, unknown, node, known)
         help = (
@@ -98,8 +102,12 @@ def report_unknown(
         if help is None and table and table not in node.entries:
             inner = ", ".join(f"{one}: {node.entries[one].span.text}" for one in unknown)
             help = f"names of your own stand in `{table}`: write `{table}: {{{inner}}}`"
-        help = help or "it has " + ", ".join(known)
-        found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)
+        for one in (name, *unknown) if help else ():
+            help = with_own(help or "", one, node.entries[one].span.text)
+        told.setdefault(help or f"it has {', '.join(known)}{len(told) * WITHOUT}", []).append(name)
+    for help, names in told.items():
+        text = f"field '{names[0]}'" if len(names) == 1 else f"fields {', '.join(map(repr, names))}"
+        found.error("unknown-field", f"{title} has no {text}", node.keys[names[0]].span, help=help.rstrip(WITHOUT))
     return not unknown
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
@@ -38,15 +39,15 @@ Kernel = Literal["wyvill", "soft_object", "metaball", "gaussian", "inverse_squar
 
 @dataclass(frozen=True, slots=True)
 class _Same:
-    """Moment as a key that equals only itself."""
+    """Things as a key that equals only the same ones; they live as long as the key, so that no other takes their id."""
 
-    moment: Moment
+    things: tuple[object, ...]
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and self.moment is other.moment
+        return isinstance(other, _Same) and all(map(operator.is_, self.things, other.things))
 
     def __hash__(self) -> int:
-        return id(self.moment)
+        return hash(tuple(map(id, self.things)))
 
 
 class Blobby(Object):
@@ -121,7 +122,8 @@ class Blobby(Object):
         """
         told = fixed_values(OWN, self, *self.skeleton)
         if told is None:
-            return moment.kept(f"skeleton {id(self)}", _Same(moment), lambda: self._parts(moment))
+            own = (self.skeleton, *(getattr(self, name) for name in OWN))  # shared by copies in another material
+            return moment.kept(f"skeleton {hash(_Same(own))}", _Same((moment, *own)), lambda: self._parts(moment))
         return SKELETONS.get(*told, lambda: self._parts(moment))
 
     def _parts(self, moment: Moment) -> Skeleton:

@@ -277,13 +277,12 @@ class Implicit(Solid):
         return value, limit
 
     def _now(self, moment: Moment) -> _Less:
-        """Formula minus the level now; for a constant formula it is made once in a run."""
+        """Formula minus the level now; for a constant formula it is made once."""
 
         def make() -> _Less:
             return _less(written_out(self.field.expr, moment), self.level, *self.bounds.corners)
 
-        constant, key = self.field.constant, (self.level, self.bounds.corners)
-        return moment.kept(f"formula {id(self.field)}", key, make) if constant else make()
+        return self.field.kept((self.level, self.bounds.corners), make) if self.field.constant else make()
 
     def _why_nothing(self, moment: Moment) -> str:
         """Reason why there is nothing to draw at any time; empty if there may be something."""
