@@ -63,10 +63,10 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     most = kernels.T_OF * max((some[0] for some in matrix.shared), default=0)
     ease, of_tie = assembly.floats([kernels.EASE]), assembly.floats(np.zeros(2 * most))
     shared_at, ended_at = kernels.HEAD + MOVER * len(movers) + ROW_INTS * len(rows), -1
-    for some in matrix.shared:
-        ended_at, some[kernels.BEFORE] = shared_at, ended_at
-        some[kernels.HALF] = of_tie + most * some[kernels.HALF]
-        shared_at += len(some)
+    for sharers in matrix.shared:
+        ended_at, sharers[kernels.BEFORE] = shared_at, ended_at
+        sharers[kernels.HALF] = of_tie + most * sharers[kernels.HALF]
+        shared_at += len(sharers)
     lists: list[Sequence[int]] = [
         *([number for some in parts for number in some] for parts in (movers, rows, matrix.shared)),
         [] if matrix.plan is None else matrix.plan.numbers.tolist(),
