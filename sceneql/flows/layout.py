@@ -48,7 +48,8 @@ UNCUT = 46
 PUSHED, GIVEN = 47, 48
 """1 where something pushes, and where the velocities of some faces are given."""
 PLAIN = 49
-"""1 where the open areas of a component's faces are all the same, and but on the boundary their volumes, at all times."""
+"""1 where the open areas of a component's faces are all the same at all times, and, but on the boundary, their
+volumes."""
 PLANS, PLAN = 50, 24
 """Of each axis PLAN integers."""
 KIND, LENGTH, TWIDDLES, TWISTS, FACTORS = 0, 1, 2, 3, 4
