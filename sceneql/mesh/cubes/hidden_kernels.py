@@ -58,7 +58,7 @@ def steep_and_bent(code, constants, parts, scratch, second):
         return np.inf, np.inf, np.inf
     last = code.shape[0] - 1
     turn = 0.5 * turning(scratch, last) * (1.0 + 1.0e-9)
-    if turn == 0.0 or not curvature(code, scratch, second):
+    if turn == 0.0 or not curvature(code, parts, scratch, second):
         return turn, np.inf, np.inf
     below, above = bulge(second, last)
     return turn, below * (1.0 + 1.0e-9), above * (1.0 + 1.0e-9)

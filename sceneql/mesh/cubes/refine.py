@@ -150,10 +150,10 @@ def _to_cut(tape: Tape, coarse: Level, cell: float, tolerance: float | None) -> 
     import numpy as np
 
     count = len(coarse.triangles)
-    too_bent, none = coarse.met[coarse.bent], np.zeros((0, 3), dtype=np.int64)
+    too_bent, none = coarse.places_of(np.flatnonzero(coarse.bent)), np.zeros((0, 3), dtype=np.int64)
     if tolerance is None:
         most = max(4 * count, MOST_BENT)
-        asked = coarse.met[coarse.bent | (coarse.turns > TURN * cell)]
+        asked = coarse.places_of(np.flatnonzero(coarse.bent | (coarse.turns > TURN * cell)))
         return [(asked, FINE, most), (too_bent, FINE, most), (too_bent, COARSER, inf), (none, COARSER, inf)]
     off = _off(tape, coarse, tolerance)
     if (off > tolerance).sum() > FEW * len(off):
