@@ -10,6 +10,7 @@ from random_tapes import tapes
 from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.tape.batch_gradient_kernels import differentiate
 from sceneql.field.tape.batch_kernels import LANES, evaluate
+from sceneql.field.tape.builder import TapeBuilder
 from sceneql.field.tape.curvature_kernels import curvature
 from sceneql.field.tape.simplify_kernels import simplify
 from sceneql.field.tape.steepness_kernels import steepness
@@ -69,26 +70,48 @@ def test_steepness_bounds_how_fast_any_tape_changes(tape, place, seed):
     assert (np.abs(f[1] - f[0]) <= most * (1 + 1e-9) + 1e-9 * (1 + np.abs(f[0]))).all()
 
 
-@settings(max_examples=examples(300))
-@given(tape=tapes(), place=boxes(), seed=st.integers(0, 9))
-def test_curvature_bounds_how_fast_the_slope_of_any_tape_changes(tape, place, seed):
-    low, high = place
+def curvatures(tape, place):
+    """Bounds (3, 2) of the second derivatives along the axes in a box; None where they are not known."""
     room, second = scratch(tape), np.zeros((len(tape.code), 6))
-    sides = [float(c) for pair in zip(low, high, strict=True) for c in pair]
+    sides = [float(c) for pair in zip(*place, strict=True) for c in pair]
     if box(*program(tape), room, *sides)[2] != WHOLE or not np.isfinite(steepness(*program(tape), room)).all():
-        return
-    if not curvature(tape.code, room, second):
-        return
+        return None
+    return second[-1].reshape(3, 2) if curvature(tape.code, tape.parts, room, second) else None
+
+
+def no_slope_turns_faster(tape, place, seed, known):
     rng = np.random.default_rng(seed)
     for axis in range(3):
-        first, last = rng.uniform(low, high, (2, 40, 3))
+        first, last = rng.uniform(*place, (2, 40, 3))
         last[:, [k for k in range(3) if k != axis]] = first[:, [k for k in range(3) if k != axis]]
         turned = (field_gradients(tape, last) - field_gradients(tape, first))[:, axis]
         along = last[:, axis] - first[:, axis]
-        bounds = np.sort(along[:, None] * second[-1, 2 * axis : 2 * axis + 2], axis=1)
+        bounds = np.sort(along[:, None] * known[axis], axis=1)
         slack = 1e-9 * (1 + np.abs(field_gradients(tape, first)[:, axis]) + np.abs(bounds).max(axis=1))
         assert (bounds[:, 0] - slack <= turned).all()
         assert (turned <= bounds[:, 1] + slack).all()
+
+
+@settings(max_examples=examples(300))
+@given(tape=tapes(), place=boxes(), seed=st.integers(0, 9))
+def test_curvature_bounds_how_fast_the_slope_of_any_tape_changes(tape, place, seed):
+    known = curvatures(tape, place)
+    if known is not None:
+        no_slope_turns_faster(tape, place, seed, known)
+
+
+@settings(max_examples=examples(100))
+@given(place=boxes(), seed=st.integers(0, 9))
+def test_curvature_is_known_and_right_of_points_in_stretched_coordinates(place, seed):
+    rng, build = np.random.default_rng(seed), TapeBuilder()
+    points = np.column_stack([*[rng.uniform(-2, 2, (6, 3))] * 2, rng.uniform(0.3, 2, 6), rng.uniform(-1, 1, 6)])
+    x, y, z = (build.op("mul", r, build.constant(c)) for r, c in ((build.x, 2.0), (build.y, 1.0), (build.z, -0.5)))
+    tape = build.finish(build.density(points, x, y, z))
+    no_slope_turns_faster(tape, place, seed, curvatures(tape, place))
+    middle, near = place[0], (place[0] - 1e-6, place[0] + 1e-6)
+    assert (np.diff(curvatures(tape, near)) < 1e-3).all()
+    turned = [field_gradients(tape, middle[None] + s * 1e-5 * np.eye(3)).diagonal() for s in (1, -1)]
+    assert np.allclose((turned[0] - turned[1]) / 2e-5, curvatures(tape, near).mean(axis=1), atol=1e-3)
 
 
 def test_curvature_is_sharp_where_terms_are_of_one_variable():
@@ -97,7 +120,7 @@ def test_curvature_is_sharp_where_terms_are_of_one_variable():
     x, y, z, h = 1.3, 0.4, 0.7, 1e-6
     assert box(*program(tape), room, x - h, x + h, y - h, y + h, z - h, z + h)[2] == WHOLE
     assert np.isfinite(steepness(*program(tape), room)).all()
-    assert curvature(tape.code, room, second)
+    assert curvature(tape.code, tape.parts, room, second)
     exact = (
         12 * x**2 - 10 - np.cos(y) / x**2 + 3.75 * x**0.5,
         np.exp(y) / (2 + z) - np.log(x) * np.cos(y),

@@ -116,6 +116,12 @@ def test_cells_that_hide_nothing_are_not_cut():
     assert left.volume <= doubt.volume
 
 
+def test_cells_beside_the_faces_that_cut_a_solid_are_proved_as_those_far_from_them():
+    # The tanglecube ends within the box, but in blocks that reach its faces: 93 cells were left where 6 are.
+    tanglecube = tape_of("x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8")
+    assert unresolved(tanglecube, (-3.0,) * 3, (3.0,) * 3, 6 / 32).cells < 10
+
+
 def test_bench_measures_the_meshes_that_the_command_makes(monkeypatch):
     half, drop = 1.0, "min(sqrt(x^2 + y^2 + z^2) - 0.5, sqrt((x-0.83)^2 + (y-0.04)^2 + (z-0.03)^2) - 0.04)"
     shape = Implicit("drop", Surface((1.0, 1.0, 1.0)), tape_of(drop), (-half,) * 3, (half,) * 3)

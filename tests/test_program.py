@@ -54,6 +54,12 @@ def test_check_tells_the_mistakes_of_all_variants(tmp_path):
     assert said.index("radus") < said.index("1 s")
 
 
+def test_an_object_by_the_name_of_a_material_does_not_hide_it(tmp_path):
+    """It was refused with the advice to write what stood there."""
+    (tmp_path / "s.yaml").write_text(STILL.replace("ball: {sphere: {", "mirror: {sphere: {material: mirror, "))
+    assert "ok" in sceneql(tmp_path, "check", "s.yaml")
+
+
 def test_options_and_commands_of_other_programs_are_told_with_what_to_write(tmp_path):
     for told, *given in (
         ("help: write `sceneql render ball.yaml`", "ball.yaml"),

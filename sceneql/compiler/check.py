@@ -23,6 +23,7 @@ from sceneql.compiler.meant.unknown_part import (
     part_meant,
     several_meant,
     warn_of_another,
+    word_for_name,
 )
 from sceneql.compiler.names import Names, Parsed
 from sceneql.compiler.over_time import check_instants
@@ -218,8 +219,9 @@ class _Checker:
         """A reader of what is no part."""
         return Reader(self.names, self.found, lambda node, mark, name: None, "", self.folder, self.files)
 
-    def kind(self, family: str, entry: Entry) -> type[Kind] | None:
-        """The class of an entry's word; None after reporting that there is none."""
+    def kind(self, family: str, entry: Entry) -> tuple[type[Kind] | None, str]:
+        """The class of an entry's word, or None after reporting that there is none, and the help that was given."""
+        help = ""
         cls = self.catalogue.load(family, entry.word)
         if cls is None:
             words = self.catalogue.choices(family)
@@ -228,7 +230,7 @@ class _Checker:
             hint = hint or word_meant(entry, family, self.catalogue, self.family_of, self.script)
             help = hint or "the words are " + ", ".join(words)
             self.found.error("unknown-word", f"'{entry.word}' is no word of {family}", entry.word_span, help=help)
-        return cls
+        return cls, help
 
     def family(self, name: str) -> str:
         """The family of an entry's word; that of its section where the word is unknown."""
@@ -265,8 +267,8 @@ class _Checker:
         if entry.word == NONE and entry.fields is None and name in OPTIONAL:
             self.without.add(name)
             return
-        known = self.kind(family, entry)
-        cls = known or judged_as(entry, family, self.catalogue, self.names)
+        known, help = self.kind(family, entry)
+        cls = known or judged_as(entry, family, self.catalogue, self.names, help)
         if cls is None:
             return
         needs: list[str] = []
@@ -316,7 +318,7 @@ class _Checker:
                 return None  # its word is reported there
             if name in self.entries and self.family(name) in (mark.family, mark.also):
                 return Ref(name, node.span)
-            if name not in self.entries and self.catalogue.load(mark.family, node.text) is not None:
+            if self.catalogue.load(mark.family, node.text) is not None:  # an object called `mirror` hides no material
                 warn_of_another(node, mark.family, entry.name, self.entries, self.family_of, self.found)
                 in_place = Entry(anonymous, node.text, None, node.span, node.span, entry.scope)
                 return self._in_place(in_place, mark.family)
@@ -325,7 +327,8 @@ class _Checker:
                 return self._in_place(Entry(name, OPTIONAL[name], None, node.span, node.span, None), "objects")
             self._unknown(node, name, mark)
             return None
-        if isinstance(node, MappingNode) and len(node.entries) == 1:
+        named = word_for_name(anonymous, node, mark, self.catalogue)
+        if isinstance(node, MappingNode) and len(node.entries) == 1 and not named:
             (word, fields), (key,) = next(iter(node.entries.items())), node.keys.values()
             scope = entry.scope if node.index is None else Scope({}, dict([node.index]), entry.scope)
             return self._in_place(Entry(anonymous, word, fields, node.span, key.span, scope), mark.family)
@@ -337,7 +340,7 @@ class _Checker:
             return None
         help = several_meant(node, mark, entry, self.catalogue) if isinstance(node, SequenceNode) else None
         if isinstance(node, MappingNode):
-            help = word_having(node, mark.family, self.catalogue)
+            help = named or word_having(node, mark.family, self.catalogue)
         self.found.error("entry-shape", message, node.span, help=help)
         return None
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from colorsys import hls_to_rgb
 from dataclasses import replace
 from math import inf, pi
 
@@ -119,6 +120,8 @@ def _meant(text: str) -> str:
         return f'write `"#{digits[1].lower()}"`'
     if text.startswith(("rgb", "rgba")) and len(numbers := [float(one) for one in _DIGITS.findall(text)]) >= 3:
         return _of_bytes(numbers[:3])
+    if (help := _of_hue(text)) is not None:
+        return help
     if (tint := _TINT.fullmatch(text.lower())) is not None and tint[2] in NAMED and "".join(tint.groups()) not in NAMED:
         share = 0.5 if tint[1] in ("light", "pale") else 1.0
         mixed = [share * one + 1 - share for one in css_color(tint[2]) or ()]
@@ -129,6 +132,25 @@ def _meant(text: str) -> str:
         near = f"did you mean '{''.join(text.split()).lower()}'?"
     near = near or suggestion(last, NAMED)
     return near or 'write a CSS name, "#rrggbb" or three numbers from 0 to 1'
+
+
+_HSL = re.compile(r"hsla?\(\s*([^,]+?)\s*(deg)?\s*,\s*([\d.]+)(%?)\s*,\s*([\d.]+)%?[^)]*\)")
+"""Hue, saturation and lightness as in CSS, or each from 0 to 1."""
+
+
+def _of_hue(text: str) -> str | None:
+    """The help for a color by hue, saturation and lightness; the hue alone where it is a formula; None for others."""
+    if (told := _HSL.fullmatch(text)) is None:
+        return None
+    hue, degrees, *rest = told.groups()
+    full = 100 if rest[1] else 1
+    try:
+        turns = float(hue)
+    except ValueError:
+        inner = f"({hue})" if re.search(r"[-+]", hue) else hue
+        return f"the full color of a hue, which goes from 0 to 1, is `hue({inner}/360)`"
+    turns /= 1 if turns <= 1 and full == 1 and degrees is None else 360
+    return _of_bytes(hls_to_rgb(turns, min(float(rest[2]) / full, 1), min(float(rest[0]) / full, 1)))
 
 
 def _of_bytes(numbers: Sequence[float]) -> str:

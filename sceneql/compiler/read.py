@@ -19,7 +19,7 @@ from sceneql import kinds
 from sceneql.compiler import limits, paint, values
 from sceneql.compiler.annotations import could_be, is_fixed, unwrap
 from sceneql.compiler.formulas import Wanted, read_formula
-from sceneql.compiler.meant import likely, under_names
+from sceneql.compiler.meant import by_side, likely, under_names
 from sceneql.compiler.meant import quantity_help as helped
 from sceneql.compiler.meant.chained import improve
 from sceneql.compiler.meant.quantity_help import TRUE
@@ -27,7 +27,7 @@ from sceneql.compiler.meant.unknown import report_unknown
 from sceneql.compiler.names import Names
 from sceneql.compiler.number_files import names_a_file, read_numbers
 from sceneql.compiler.paths import read_path
-from sceneql.compiler.problems import Unreadable, validated
+from sceneql.compiler.problems import Unreadable, report_known, validated
 from sceneql.compiler.texts import read_text, unescaped
 from sceneql.kinds.values import Verbatim
 from sceneql.language.repeat import numbered
@@ -84,18 +84,24 @@ class Reader:
         ok, other = True, False
         got: dict[str, Any] = {}
         mistaken: set[str | None] = set()
+        shown: set[str] = set()
         if isinstance(node, MappingNode):
             known = [kinds.written_name(name) for name in cls.model_fields]
             counter = node.entries.get("repeat") if "repeat" not in known else None
             number = counter.entries.get("as") if isinstance(counter, MappingNode) else None
             if isinstance(number, Scalar):  # the copies' number is not known, which the field's error tells
                 self.names.broken.add(number.text)
+            before = len(self.found.found)
             ok = report_unknown(node, known, title, self.found, **likely.asked(self, cls))
             ok = ok and not node.partial
             unknown = [name for name in node.entries if name not in known]
             alone = len(unknown) > 1 or len(written) == 1  # another thing may well be meant
             other = alone and all(instead(f"field.{title}", one) for one in unknown) and bool(unknown)
             mistaken = likely.meant(self, cls, node)
+            helps = [one.help or "" for one in self.found.found[before:]]
+            if any(help.startswith(likely.ANOTHER) for help in helps):
+                mistaken |= {*known}
+            mistaken |= (shown := {name for name in known for help in helps if f"`{name}: " in help})
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)
             if name not in written:
@@ -120,7 +126,12 @@ class Reader:
             except Unreadable:
                 ok = False
                 improve(self, written, cls, name, title, before)
+                errors = self.found.found[before:]
+                if name in shown and [one.code for one in errors] == ["wrong-shape"]:
+                    del self.found.found[before:]  # an unknown field's help writes it anew
         if not ok:
+            if {*written} <= {*map(kinds.written_name, cls.model_fields)} and not (node is not None and unsure(node)):
+                report_known(cls, got, node, span, self.found)
             raise Unreadable
         return self._some(validated(cls, got, node, span, self.found))
 
@@ -262,6 +273,8 @@ class Reader:
                 if f"{text}p" in map(str, choices)
                 else likely.choice_meant(text, list(map(str, choices)))
             )
+            if text.isdecimal() and hint != f"write `{text}p`":
+                hint = f"write `{text} {max(2, 2 * round(int(text[:6]) * 9 / 32))}`, its width and its height"
             hint = f"write `{' '.join(several)}`" if len(several) > 1 and "".join(several).isdecimal() else hint
             raise self._fail("unknown-choice", f"{what} is {other} or one of {every}, not '{text}'", node.span, hint)
         hint = likely.choice_meant(text, [str(c) for c in choices]) or f"one of {every}"
@@ -331,7 +344,8 @@ class Reader:
 
     def _dict(self, node: Node, arms: tuple[Any, ...], what: str) -> dict[Any, Any]:
         if not isinstance(node, MappingNode):
-            better = under_names.by_name(node, arms[1], bool(unwrap(arms[0])[1]))
+            better = by_side.parts_at_sides(self, node, arms[1], what)
+            better = better or under_names.by_name(node, arms[1], bool(unwrap(arms[0])[1]))
             raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, better)
         named, result, ok = unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():

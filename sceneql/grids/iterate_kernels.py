@@ -11,6 +11,8 @@ from sceneql.grids.multigrid.linear_kernels import solver_at
 from sceneql.grids.multigrid.stencil_kernels import dot
 
 MOST_NEWTON = 40
+LOCAL = 30.0
+"""Largest error of one cell by its residual, in mean errors: small cells at a boundary add little to the mean."""
 UNSOLVED = 1e-13
 """Rounding error of a residual, relative to the numbers that cancel in it."""
 
@@ -28,6 +30,17 @@ def residual(n, a, volume, base, y, slope, r, d):
     for c in range(n):
         r[c] = volume[c] * (inverse * (base[c] - y[c]) + slope[c])
     return math.sqrt(dot(r, r)), whole, largest
+
+
+@lean_inlined
+def worst(volume, r):
+    """The residual that the largest cell would have if it changed as much as the cell whose own changes it most."""
+    most = largest = 0.0
+    for c in range(r.size):
+        if volume[c] > 0.0:
+            most = max(most, abs(r[c]) / volume[c])
+            largest = max(largest, volume[c])
+    return most * largest
 
 
 @lean_inlined
@@ -64,11 +77,13 @@ def iterate(functions, t, a, base, y, slope, r, d, store, plan, settings, floats
             size, whole, largest = residual(n, a, volume, base[at:], x, slope[at:], r, d)
         target = settings[stage.RELATIVE] * max(whole, largest) + settings[stage.ABSOLUTE] * cells / a
         rounding = UNSOLVED * (1.0 + a * stiffest(plan, floats)) * max(whole, largest)
-        if size <= max(target, rounding) or (size > 0.5 * before and size <= 100.0 * rounding):
+        small = size <= max(target, rounding)
+        uneven = worst(volume, r) > LOCAL * max(target, rounding) / math.sqrt(r.size)
+        if (small and not uneven) or (size > 0.5 * before and size <= 100.0 * rounding):
             return True
         before = size
         # For y = 0 the solution's size is not known yet, but that of the residual is.
-        target = max(target, rounding, settings[stage.RELATIVE] * size)
+        target = 0.1 * size if small else max(target, rounding, settings[stage.RELATIVE] * size)
         if not solve(plan, a, 0.5 * target, floats, r, d, store):
             return False
         for c in range(n):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TypeGuard
+from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar, cast
 
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.quantities.dimension import Dimension
@@ -15,6 +16,7 @@ from sceneql.quantities.span import Span
 if TYPE_CHECKING:
     from pydantic_core import CoreSchema
 
+T = TypeVar("T")
 TIME = ("t", "time")
 """Names of the time in formulas."""
 
@@ -175,6 +177,14 @@ class Formula(Checked):
 
     expr: Expr
     span: Span | None = None
+    _made: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
+    """Cache of ``kept``."""
+
+    def kept(self, key: Hashable, make: Callable[[], T]) -> T:
+        """What was made of it once under a key, for all runs and frames; for constant formulas."""
+        if key not in self._made:
+            self._made[key] = make()
+        return cast(T, self._made[key])
 
     @property
     def constant(self) -> bool:

@@ -102,6 +102,12 @@ def broken_near(source: Source, text: str, at: int, opening: int | None) -> list
     return scan.faults
 
 
+def calls_another(text: str) -> bool:
+    """Whether a value begins with a function of another language: where it is read, what stands here is told."""
+    called = _CALLED.match(text)
+    return called is not None and called[1] not in FUNCTIONS and instead("function", called[1]) is not None
+
+
 def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
     """Report all faults, given in the order of the text, each with its line as corrected."""
     lines: dict[int, list[Fault]] = {}
@@ -113,8 +119,7 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
                 found.add(fault.diagnostic)
                 continue
             written = source.text[fault.caret : fault.end]
-            called = _CALLED.match(written)
-            if called is not None and called[1] not in FUNCTIONS and instead("function", called[1]) is not None:
+            if calls_another(written):
                 continue  # it is reported where the value is read
             if _LOOP.search(source.line(source.position(fault.caret)[0])) is not None:
                 help = f"values have no loops; of parts {instead('entry', 'for')}"
@@ -269,6 +274,11 @@ class _Scan:
             return close
         end, _ = self.plain(at, nested=depth > 0)
         rest = self.text[at:end]
+        if rest == ";":
+            caret = Span(self.source, at, end)
+            ended = Diagnostic("yaml-syntax", "nothing can stand behind this bracket", caret, "leave out the `;`")
+            self.faults.append(Fault("yaml-syntax", at, end, at, "", ended, " "))
+            return end
         sign = _COMMENT.match(rest)
         if sign is not None and (sign[0] == "//" or self.text[start] == "{"):
             caret = Span(self.source, at, end)

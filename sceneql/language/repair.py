@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final
 
-from sceneql.language.broken_values import NUMBER, Fault
+from sceneql.language.broken_values import NUMBER, Fault, calls_another
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, hole
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.parser import parse_value
@@ -39,7 +39,8 @@ def repaired(fault: Fault, source: Source) -> Node:
     if fault.code == "unit-after-bracket":
         inside = Span(source, fault.start, source.text.rindex("]", fault.start, fault.caret) + 1)
         return _with_unit(inside, source.text[fault.caret : fault.end]) or hole(span)
-    if fault.diagnostic is not None or (fault.code == "torn-expression" and not _sound(span.text, span)):
+    unread = fault.code == "torn-expression" and not (_sound(span.text, span) or calls_another(span.text))
+    if fault.diagnostic is not None or unread:
         return hole(span)
     return Scalar(" ".join(span.text.split()), "text", False, source, fault.start, fault.end)
 

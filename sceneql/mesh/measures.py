@@ -26,7 +26,7 @@ def volume_and_area(vertices: Floats, triangles: Ints) -> tuple[float, float]:
 
     found = np.zeros(2)
     places = np.require(vertices, np.float64, ["C", "W"])  # kernels take no array that is read-only
-    sum_up(places, np.require(triangles, np.int32, ["C", "W"]), places.mean(axis=0), found)
+    sum_up(places, np.require(triangles, np.int32, ["C", "W"]), found)
     return float(found[0] / 6.0), float(0.5 * found[1])
 
 
@@ -64,28 +64,34 @@ def area(vertices: Floats, triangles: Ints) -> float:
 
 def edge_counts(triangles: Ints) -> tuple[int, int, int]:
     """Numbers of edges: (all, those of only one triangle, those of more than two)."""
+    edges, single, several, _ = _counted(triangles)
+    return edges, single, several
+
+
+def euler_and_open_edges(triangles: Ints) -> tuple[int, int]:
+    """(``euler_characteristic``, number of edges of only one triangle)."""
+    edges, single, _, vertices = _counted(triangles)
+    return vertices - edges + len(triangles), single
+
+
+def euler_characteristic(triangles: Ints) -> int:
+    """Vertices - edges + triangles; 2 for a sphere, 0 for a torus, 2 less for each further handle."""
+    return euler_and_open_edges(triangles)[0]
+
+
+def _counted(triangles: Ints) -> tuple[int, int, int, int]:
+    """Numbers of edges as ``edge_counts`` has them, and of vertices that triangles have."""
     import numpy as np
 
     from sceneql.mesh.cubes.triangle_kernels import count_edges
 
-    found = np.zeros(3, dtype=np.int64)
+    found, most = np.zeros(4, dtype=np.int64), int(triangles.max(initial=-1)) + 1
     count_edges(
-        np.ascontiguousarray(triangles, dtype=np.int32), np.zeros(int(triangles.max(initial=-1)) + 2, dtype=np.int64),
-        np.empty(3 * len(triangles), dtype=np.int32), found,
+        np.ascontiguousarray(triangles, dtype=np.int32), np.zeros(most + 1, dtype=np.int64),
+        np.empty(3 * len(triangles), dtype=np.int32), np.zeros(most, dtype=np.uint8), found,
     )  # fmt: skip
-    return int(found[0]), int(found[1]), int(found[2])
-
-
-def euler_characteristic(triangles: Ints, edges: int | None = None) -> int:
-    """Vertices - edges + triangles; 2 for a sphere, 0 for a torus, 2 less for each further handle.
-
-    ``edges`` are counted where their number is not given.
-    """
-    import numpy as np
-
-    used = np.zeros(int(triangles.max(initial=-1)) + 1, dtype=bool)
-    used[triangles] = True
-    return int(used.sum()) - (edge_counts(triangles)[0] if edges is None else edges) + len(triangles)
+    edges, single, several, vertices = found.tolist()
+    return edges, single, several, vertices
 
 
 def euler_by_piece(triangles: Ints) -> list[int]:

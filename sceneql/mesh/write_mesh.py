@@ -30,7 +30,9 @@ def write(path: Path, polygons: Polygons, colors: Floats | None = None) -> None:
 
     ``colors`` (n, 3): linear RGB of the vertices, left out of an STL file. Raises Unsuitable and OSError.
     """
-    smooth = bool(polygons.normals.any(axis=1).all())
+    import numpy as np
+
+    smooth = bool(np.einsum("vj,vj->v", polygons.normals, polygons.normals).all())
     kind = format_of(path)
     hues = None
     if colors is not None and kind != "stl":

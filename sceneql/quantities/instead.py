@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 
 from sceneql.quantities.dimension import ANGLE, FREQUENCY, TEMPERATURE, Dimension
-from sceneql.quantities.instead_in_formulas import OF_FORMULAS, OF_MODELS
+from sceneql.quantities.instead_in_formulas import OF_FORMULAS, OF_NAMED
 from sceneql.quantities.instead_of_sections import OF_SECTIONS
 from sceneql.quantities.instead_of_words import OF_PARTS
 
 INSTEAD = {
     (what, word): text
-    for kinds, words, text in (*OF_FORMULAS, *OF_PARTS, *OF_MODELS, *OF_SECTIONS)
+    for kinds, words, text in (*OF_FORMULAS, *OF_PARTS, *OF_NAMED, *OF_SECTIONS)
     for what in kinds.split()
     for word in words.split()
 }
@@ -41,6 +41,7 @@ def time_meant(text: str) -> str | None:
 
 def instead(what: str, word: str) -> str | None:
     """The help for a word of another program that is taken for ``what`` (a key of `INSTEAD`), if known."""
+    word = word.removesuffix("()")
     return INSTEAD.get((what, word)) or INSTEAD.get((what, word.lower()))
 
 

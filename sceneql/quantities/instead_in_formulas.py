@@ -1,4 +1,4 @@
-"""Sentences on formulas, and on models by other names: what to write instead of functions, signs, names and units.
+"""Sentences on formulas, and on parts by other names: what to write instead of functions, signs, units and words.
 
 For messages alone.
 """
@@ -194,7 +194,69 @@ OF_FORMULAS = (
 )
 """(what the words were taken for, the words, the sentence)."""
 
-OF_MODELS = (
+OF_NAMED = (
+    ("cameras", "isometric iso axonometric", "write `{orthographic: {look_along: -1 -0.8 -1}}`"),
+    (
+        "cameras",
+        "top front side left right above",
+        "write `{orthographic: {look_along: 0 -1 0}}` from above, `0 0 -1` from the front, `-1 0 0` from the right",
+    ),
+    (
+        "forces",
+        "buoyancy archimedes lift",
+        "of a body write how it is pushed up by place, `{force: {components: [0, where(y < 0, 1000, 0), 0]}}`; a `flow`"
+        " has its `buoyancy`",
+    ),
+    (
+        "forces",
+        "lennard_jones lennardjones lj van_der_waals morse cohesion attraction",
+        "between all masses there are `mutual_gravity`, which draws them together, `repulsion` and `electrostatic`",
+    ),
+    (
+        "forces",
+        "magnet magnetism lorentz",
+        "write `{magnetic: {field: 0 0 1 T, charge: 1 C}}`: `sceneql words magnetic`",
+    ),
+    (
+        "models",
+        "sph smoke fire gas fluid_particles flip mpm",
+        "a fluid is a `flow`, smoke a `diffusion` with `drift: {by: FLOW}`, and sparks and drops are `particles` with"
+        " `emit`",
+    ),
+    (
+        "objects",
+        "heightfield height_field heightmap terrain landscape elevation_grid elevationgrid",
+        "a height above x and z is a formula: write `{implicit: {field: y - 0.3*sin(x)*cos(z), bounds: {box: [-3 -1 -3,"
+        " 3 1 3]}}}`",
+    ),
+    (
+        "objects",
+        "points point_cloud pointcloud dots scatter markers",
+        "soft dots stand at points: write `{sprites: {at: <points|[0 0 0 m, 1 0 0 m]>}}`; a solid of balls that melt"
+        " together is a `blobby`",
+    ),
+    (
+        "objects",
+        "cone pyramid frustum",
+        "a cone is a cylinder that is tapered, `{taper: {of: {cylinder: {radius: <radius|0.5 m>, height: <height|2 m>,"
+        " position: <position|0 1 0 m>}}, factor: 0.1}}`",
+    ),
+    ("collider", "ground", "what masses touch is the `floor`: write `between: [ball, floor]`"),
+    (
+        "overlays",
+        "timer clock time stopwatch counter timestamp",
+        'a caption tells the time: `{caption: {text: "t = {time:.1f s}"}}`',
+    ),
+    (
+        "overlays",
+        "axes axis grid ruler scale_bar scalebar compass gizmo",
+        "there is none: arrows and tubes among the `objects` show axes, `{arrow: {vector: 1 0 0 m}}`",
+    ),
+    (
+        "materials",
+        "image texture bitmap photo picture map",
+        "no picture is read here: write a color, or `checker`, or a color that is a formula of x, y, z",
+    ),
     (
         "models",
         "skeleton bones bone armature rig ik inverse_kinematics kinematics chain_ik character puppet",
@@ -216,7 +278,8 @@ OF_MODELS = (
     (
         "models",
         "soft_body softbody soft jelly jello gel rubber_ball deformable_body",
-        "write `{elastic: {of: <of|ball>, law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}}}`, of an object",
+        "write `{elastic: {of: <of|ball>, law: {neo_hookean: {modulus: <modulus|10 kPa>, poisson: <poisson|0.45>}}}}`,"
+        " of an object",
     ),
     (
         "models",
@@ -225,8 +288,8 @@ OF_MODELS = (
     ),
     (
         "models",
-        "dust sparks sparkles snow rain fireworks",
-        "write `{particles: {emit: {rate: 100 /s, velocity: 0 3 0 m/s, lifetime: 2 s}}}`",
+        "popnet pop emitter particle_system particlesystem particle_emitter dust sparks sparkles snow rain fireworks",
+        "write `{particles: {emit: {rate: <rate|100 /s>, velocity: <velocity|0 3 0 m/s>, lifetime: <lifetime|2 s>}}}`",
     ),
     (
         "models",

@@ -47,34 +47,6 @@ OF_SECTIONS = (
     ("bare.law", "rubber elastomer silicone", "rubber is `{neo_hookean: {modulus: 1 MPa, poisson: 0.49}}`"),
     ("bare.law", "jelly gel soft foam flesh", "jelly is `{neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`"),
     ("bare.law", "wood plastic stiff", "wood is `{linear: {modulus: 10 GPa, poisson: 0.3}}`"),
-    ("cameras", "isometric iso axonometric", "write `{orthographic: {look_along: -1 -0.8 -1}}`"),
-    (
-        "cameras",
-        "top front side left right above",
-        "write `{orthographic: {look_along: 0 -1 0}}` from above, `0 0 -1` from the front, `-1 0 0` from the right",
-    ),
-    (
-        "forces",
-        "buoyancy archimedes lift",
-        "of a body write how it is pushed up by place, `{force: {components: [0, where(y < 0, 1000, 0), 0]}}`; a `flow`"
-        " has its `buoyancy`",
-    ),
-    (
-        "forces",
-        "lennard_jones lennardjones lj van_der_waals morse cohesion attraction",
-        "between all masses there are `mutual_gravity`, which draws them together, `repulsion` and `electrostatic`",
-    ),
-    (
-        "forces",
-        "magnet magnetism lorentz",
-        "write `{magnetic: {field: 0 0 1 T, charge: 1 C}}`: `sceneql words magnetic`",
-    ),
-    (
-        "models",
-        "sph smoke fire gas fluid_particles flip mpm",
-        "a fluid is a `flow`, smoke a `diffusion` with `drift: {by: FLOW}`, and sparks and drops are `particles` with"
-        " `emit`",
-    ),
     (
         "field.blobby",
         "position pos location center centre",
@@ -84,6 +56,12 @@ OF_SECTIONS = (
         "field.cloth field.mass_spring",
         "colliders collider collides_with collision collisions",
         "what it touches is a contact: write `contacts: [collision]`, which is with all solids",
+    ),
+    (
+        "place.flow",
+        "density",
+        "a flow has one density; of warm or salty fluid that it carries some is lighter by its `buoyancy`: `buoyancy:"
+        " {by: heat.temperature, expansion: 3.4e-3 1/K, reference: 300 K}`",
     ),
     ("field.gear", "ratio gear_ratio transmission", "its teeth say it: a ratio of 2 is `teeth: 40 20`"),
     (
@@ -217,22 +195,6 @@ OF_SECTIONS = (
         "free neumann insulated adiabatic reflecting noflux no_flux no_slip noslip walls wall",
         "so it is where nothing is said: leave it out",
     ),
-    (
-        "objects",
-        "cone pyramid frustum",
-        "a cone is a cylinder that is tapered, `{taper: {of: {cylinder: {height: 2 m}}, factor: 0.1}}`",
-    ),
-    ("collider", "ground", "what masses touch is the `floor`: write `between: [ball, floor]`"),
-    (
-        "overlays",
-        "timer clock time stopwatch counter timestamp",
-        'a caption tells the time: `{caption: {text: "t = {time:.1f s}"}}`',
-    ),
-    (
-        "overlays",
-        "axes axis grid ruler scale_bar scalebar compass gizmo",
-        "there is none: arrows and tubes among the `objects` show axes, `{arrow: {vector: 1 0 0 m}}`",
-    ),
     ("field.implicit", "box", "write `bounds: {box: [-1 -1 -1, 1 1 1]}`, the low and the high corner"),
     ("field.implicit", "ball sphere", "write `bounds: {ball: 1.5}`, the radius about the origin"),
     ("field.coil", "thickness width wire_radius line_width", "half of how thick the wire is is `wire: 1 cm`"),
@@ -276,11 +238,6 @@ OF_SECTIONS = (
         "it is flat; a body comes in a file, `{mesh: {file: part.stl}}`, or is made by `union` and `intersection`",
     ),
     (
-        "materials",
-        "image texture bitmap photo picture map",
-        "no picture is read here: write a color, or `checker`, or a color that is a formula of x, y, z",
-    ),
-    (
         "field.objects",
         "emission emissive emit luminance",
         "what shines is a material: `material: {glow: {color: orange, strength: 5}}`",
@@ -308,7 +265,7 @@ OF_SECTIONS = (
     ("section", "seed", "write `clock: {seed: 5}`"),
     (
         "section",
-        "setup draw update loop main start animate init render_loop",
+        "requestanimationframe game_loop gameloop setup draw update loop main start animate init render_loop",
         "a script says what there is and how it moves, not what is done in each frame: values may be formulas of"
         " `time`, models move objects; `sceneql words sections` shows a whole script",
     ),
@@ -318,11 +275,16 @@ OF_SECTIONS = (
         "functions are there without it, `sceneql words functions`; `include: more.yaml` takes in a script",
     ),
     ("section", "for while foreach", REPEAT),
+    (
+        "section",
+        "print printf console.log echo disp puts",
+        "text stands in a caption, `overlays: {title: {caption: {text: hello}}}`: `sceneql words caption`",
+    ),
     ("section", "layout", "write `outputs: {film: {video: {layout: [{each: variant}]}}}`: `sceneql words layout`"),
     ("section", "if switch", f"there is no `if` around parts; in a value {IF}"),
     (
         "section",
-        "def class fn",
+        "def class fn function",
         "a piece with fields of its own is a template: `sceneql words templates`",
     ),
     (
@@ -361,7 +323,7 @@ OF_SECTIONS = (
     ("section", "camera", "write `cameras: {main: {perspective: {position: 0 2 5 m, look_at: 0 1 0 m}}}`"),
     (
         "section",
-        "joints hinges constraints constraint",
+        "joint hinge joints hinges constraints constraint",
         "write `ties: {name: {hinge: {between: [model.a, model.b], at: 0 0 0 m}}}`: `sceneql words hinge`",
     ),
     (
@@ -371,6 +333,7 @@ OF_SECTIONS = (
         " `sceneql words keys`",
     ),
     ("section", "gravity", "write `forces: [gravity]`, or `forces: [{gravity: {strength: 9.81 m/s^2}}]`"),
+    ("section", "addforce add_force push thrust", "write `forces: [gravity, {force: {components: [0, 5, 0]}}]`, in N"),
     ("section", "collision contact", "write `forces: [gravity, collision]`"),
     ("section", "duration end length stop time", "write `clock: {end: 5 s}`: `sceneql words clock`"),
     ("section", "fps framerate frame_rate", "write `clock: {fps: 30}`: `sceneql words clock`"),

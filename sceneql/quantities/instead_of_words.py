@@ -39,7 +39,7 @@ OF_PARTS = (
     ("field.outputs", "frames count number", "the clock tells how many there are: `clock: {end: 4 s, fps: 30}`"),
     ("field.outputs", "frame frame_number", "write its time: frame 12 of 30 a second is `time: 0.4 s`"),
     ("field.outputs", "codec bitrate container", "a film is MP4, H.264: `quality: 17` says how large it gets"),
-    ("field.lights", "position", "it has a direction: `elevation: 50 deg, azimuth: 30 deg`, or `direction`"),
+    ("field.lights", "position", "it has a direction, from the scene towards it: `direction: 1 2 1`"),
     ("field.lights", "temperature kelvin", "write its `color`"),
     (
         "lights",
@@ -224,11 +224,21 @@ OF_PARTS = (
     ),
     (
         "field",
-        "restitution bounce bounciness bouncy elasticity friction",
-        "a contact has it, `contacts: {touch: {collision: {restitution: 0.8, friction: 0.3}}}`",
+        "restitution bounce bounciness bouncy elasticity",
+        "a contact has it, `contacts: {touch: {collision: {restitution: 0.8}}}`",
     ),
+    (
+        "field.objects",
+        "finish phong reflection specularity ambient",
+        "a material says it, `material: {glossy: {roughness: 0.2}}`, or `mirror`, `metal`: `sceneql words glossy`",
+    ),
+    ("field", "friction", "a contact has it, `contacts: {touch: {collision: {friction: 0.3}}}`"),
     ("field.objects", "count copies number amount instances", REPEAT),
-    ("field", "gravity", "write `forces: [gravity]`: `sceneql words gravity`"),
+    (
+        "field",
+        "gravity",
+        "write `forces: [gravity]`, or how strong it is, `forces: [{gravity: {strength: 9.81 m/s^2}}]`",
+    ),
     ("field", "solver integrator", "write `solvers: {main: {rk4: {step: 1 ms}}}`: `sceneql words sections`"),
     ("field", "timestep time_step dt step", "a solver has the step: `solvers: {main: {rk4: {step: 1 ms}}}`"),
     ("field.outputs", "file filename path", "the file is named where it is made: `sceneql render SCENE -o FILE`"),
@@ -295,7 +305,7 @@ OF_PARTS = (
         "members stand in a list, `of: [{box: {}}, {sphere: {}}]`, of a group `children: [...]`",
     ),
     ("field", "frames frame_count num_frames nframes", "the clock has the length in s: `clock: {end: 4 s, fps: 30}`"),
-    ("field", "diameter", "write half of it as `radius`"),
+    ("field", "diameter", "half of it is its `radius: 0.5 m`"),
     (
         "field.objects",
         "velocity speed mass acceleration weight density",
@@ -331,7 +341,8 @@ OF_PARTS = (
     (
         "objects",
         "ellipsoid egg spheroid",
-        "write its formula: `{implicit: {field: (x/2)^2 + y^2 + z^2 - 1, bounds: {box: [-2 -1 -1, 2 1 1]}}}`",
+        "it is a ball of 1 m that a group stretches: write `{group: {children: [{sphere: {radius: 1 m}}], scale:"
+        " <radii#|1 0.5 1>, position: <position|0 1 0 m>}}`",
     ),
     (
         "objects",

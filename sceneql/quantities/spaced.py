@@ -25,6 +25,14 @@ _CALLED = re.compile(
     r"(?:new\s+)?(?:\w+\.)*\w*?(?:vec|vector|point|array|float3|tuple)\w*\(\s*[\[(]?([^()\[\],]+(?:,[^()\[\],]+){1,2})[\])]?\s*\)",
     re.IGNORECASE,
 )
+_SIGNED, _UNIT = r"([-+]?\d*\.?\d+)", r"([^\W\d][\w/^*]*|°)?"
+_RANGE = re.compile(rf"\s*{_SIGNED}\s*{_UNIT}\s*(?:\.\.\.?|–|\bto\b|(?<=\w)-)\s*{_SIGNED}\s*{_UNIT}\s*")
+_DRAWN = re.compile(
+    rf"(?:\w+\.)*(?:rand|random|randint|randrange|uniform|rand_range|random_range|between|range)?"
+    rf"[\[(]\s*{_SIGNED}\s*{_UNIT}\s*,\s*{_SIGNED}\s*{_UNIT}\s*[\])]\s*(\*?\s*[^\W\d][\w/^*]*)?",
+    re.IGNORECASE,
+)
+_ABOUT = re.compile(rf"\s*{_SIGNED}\s*{_UNIT}\s*(?:±|\+/?-)\s*{_SIGNED}\s*{_UNIT}\s*")
 _CHOICE = re.compile(r"([^?:]+)\?([^?:]+):([^?:]+)")
 _IF_ELSE = re.compile(r"(.+?)\s+if\s+(.+?)\s+else\s+(.+)")
 _RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
@@ -94,11 +102,41 @@ def _pieces(text: str) -> list[str]:
 
 
 def two_ends(text: str) -> str | None:
-    """Two numbers with the sign of a range between them as a vector of two, ``-30 30`` for ``-30..30``; else None."""
-    found = re.fullmatch(r"\s*([-+]?[\d.]*?\d)\s*(?:\.\.\.?|–|to)\s*([-+]?\d[\d.]*)\s*([^\W\d]\S*|°)?\s*", text)
+    """Two numbers with the sign of a range between them, or as a chance between them, as a vector of two.
+
+    ``-30 30`` for ``-30..30``, ``1 3 s`` for ``1 s to 3 s``, ``[1 s, 3 s]`` and ``random(1, 3) s``; None of others.
+    """
+    found = _RANGE.fullmatch(text) or _DRAWN.fullmatch(text)
+    if found is None or (found[2] and found[4] and found[2] != found[4]):
+        return None
+    behind = found[5] if found.re is _DRAWN else None
+    unit = (found[4] or found[2] or behind or "").lstrip("* ").replace("°", "deg")
+    return f"{found[1]} {found[3]} {unit}".strip()
+
+
+def declared(script: str, name: str) -> str | None:
+    """The help for a name whose definition is a comment here: ``#declare R = 0.5;``, ``#define R 0.5``."""
+    found = re.search(rf"^#(?:declare|local|define)\s+{re.escape(name)}\s*=?\s*([^;\n]+)", script, re.MULTILINE)
     if found is None:
         return None
-    return f"{found[1]} {found[2]}" + ("" if found[3] is None else f" {found[3].replace('°', 'deg')}")
+    return f"a line that begins with `#` is a comment: write `define: {{{name}: {found[1].strip()}}}`"
+
+
+def between_times(text: str) -> str | None:
+    """The help for two times with the sign of a range between them where a formula says when: ``1 s to 2 s``."""
+    ends = (two_ends(text) or "").split()
+    if len(ends) != 3 or ends[2] not in ("s", "ms", "min", "h"):
+        return None
+    low, high, unit = ends
+    return f"from when to when is two conditions: `(time > {low} {unit})*(time < {high} {unit})`"
+
+
+def mean_and_more(text: str) -> tuple[str, str, str] | None:
+    """The mean, the deviation and the unit of ``2 +- 1 s``; None of other texts."""
+    found = _ABOUT.fullmatch(text)
+    if found is None or (found[2] and found[4] and found[2] != found[4]):
+        return None
+    return found[1], found[3], (found[4] or found[2] or "").replace("°", "deg")
 
 
 def apart(text: str) -> str | None:

@@ -160,17 +160,17 @@ def _account(
     output: Path, polygons: Polygons, cell: float, hidden: Unresolved | None, missed: float, folded: int
 ) -> Account:
     """The account of a written mesh."""
-    from sceneql.mesh.measures import edge_counts, euler_characteristic, volume_and_area
+    from sceneql.mesh.measures import euler_and_open_edges, volume_and_area
 
     vertices, triangles = polygons.vertices, polygons.triangles
-    edges, boundary, _ = edge_counts(triangles)
+    euler, boundary = euler_and_open_edges(triangles)
     volume, area = volume_and_area(vertices, triangles)
     return Account(
         file=output,
         vertices=len(vertices),
         triangles=len(triangles),
         cell=cell,
-        euler=euler_characteristic(triangles, edges),
+        euler=euler,
         volume=volume,
         area=area,
         boundary_edges=boundary,

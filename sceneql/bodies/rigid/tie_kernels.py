@@ -12,9 +12,16 @@ import math
 from numba import types
 
 from sceneql.bodies.rigid.tie_matrix_kernels import (
+    EASE_AT,
+    FRESH,
+    KIND_BITS,
+    KINDS,
+    LAST,
+    MARKS,
     MOVED_AT,
     MOVERS,
     MOVERS_AT,
+    NUMBERS_FROM,
     ONE,
     OTHER,
     RIGHT_AT,
@@ -23,9 +30,14 @@ from sceneql.bodies.rigid.tie_matrix_kernels import (
     ROWS_FROM,
     ROWS_OF,
     SIDES,
+    STRIDE,
+    TIE_HOLDS,
     TIES,
     TIES_AT,
-    factor,
+    add_tie,
+    begin_matrix,
+    end_matrix,
+    factor_filled,
     solve,
 )
 from sceneql.bodies.rigid.tie_rows_kernels import (
@@ -53,13 +65,15 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     ROW_INTS,
     SCRATCH,
     VELOCITY,
+    WRITTEN,
     press,
     see,
     turning,
     weighed_by,
-    write_row,
+    write,
 )
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.prefetch_kernels import fetch_all
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
 
 COARSE = 1e-10
@@ -78,36 +92,57 @@ GAIN = 0.98
 CLOSED = 1e-14
 """Gap of a row, against the numbers that it is the difference of, below which it is rounding."""
 MOST_CLOSINGS = 6
+AHEAD = 5
+"""Ties that are fetched from memory before they are written."""
 OPENED = 1e-6
 """Such a gap from which a tie counts as one that cannot be held."""
 
 
 @lean_inlined
-def write_tie(floats, ints, tie, row):
-    """Write the rows of a tie, the first of which is ``row``; how many they are."""
+def fetch_tie(floats, ints, tie):
+    """Ask for what is read and written of a tie that comes soon, and of movers that come with it first."""
     which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
-    for k in range(row, row + which[ROWS_OF]):
-        write_row(floats, ints, ints[ROWS_AT] + ROW_INTS * k, which[ONE], which[OTHER])
-    return which[ROWS_OF]
+    fetch_all(floats, which[ROWS_FROM], which[ROWS_FROM] + ROW * which[ROWS_OF])
+    for side in range(2):
+        if which[MARKS] & (FRESH << side):
+            to = ints[MOVED_AT] + MOVED * which[ONE + side]
+            fetch_all(floats, to, to + MOVED)
+
+
+@lean(types.void(A, I, N))
+def write_tie(floats, which, moved):
+    """Write the rows of the tie of the integers ``which``, where the floats of movers begin at ``moved``."""
+    one, two, holds = moved + MOVED * which[ONE], moved + MOVED * which[OTHER], floats[which[TIE_HOLDS]] != 0.0
+    to, numbers, kinds = which[ROWS_FROM], which[NUMBERS_FROM], which[KINDS]
+    for _ in range(which[ROWS_OF]):
+        kind = kinds & ((1 << KIND_BITS) - 1)
+        if kind != WRITTEN:
+            write(floats, kind, to, numbers, holds, one, two)
+            numbers += which[STRIDE]
+        kinds >>= KIND_BITS
+        to += ROW
 
 
 @lean(types.void(F, A, A, I))
 def survey(t, y, floats, ints):
     """Write the movers and the rows for a state."""
-    for m in range(ints[MOVERS]):
-        see(y, floats, ints[MOVED_AT] + MOVED * m, ints, ints[MOVERS_AT] + MOVER * m)
-    row = 0
     for tie in range(ints[TIES]):
-        row += write_tie(floats, ints, tie, row)
+        which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
+        if tie + AHEAD < ints[TIES]:
+            fetch_tie(floats, ints, tie + AHEAD)
+        for side in range(2):
+            if which[MARKS] & (FRESH << side):
+                m = which[ONE + side]
+                see(y, floats, ints[MOVED_AT] + MOVED * m, ints, ints[MOVERS_AT] + MOVER * m)
+        write_tie(floats, which, ints[MOVED_AT])
 
 
 @lean(F(A, I, N, N, N, N, A))
 def left_of(floats, ints, tie, row, target, size_at, right):
     """Write -(J x + floats[target]) of a tie's rows; the largest, against the numbers that it is a sum of."""
-    worst = 0.0
-    which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
-    one = floats[which[ONE] + AT_A : which[ONE] + AT_A + 6]
-    two = floats[which[OTHER] + AT_A : which[OTHER] + AT_A + 6]
+    worst, which = 0.0, ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
+    first, second = ints[MOVED_AT] + MOVED * which[ONE] + AT_A, ints[MOVED_AT] + MOVED * which[OTHER] + AT_A
+    one, two = floats[first : first + 6], floats[second : second + 6]
     a, b, c, d, e, f = one[0], one[1], one[2], one[3], one[4], one[5]
     u, v, w, x, y, z = two[0], two[1], two[2], two[3], two[4], two[5]
     to = which[ROWS_FROM]
@@ -138,16 +173,24 @@ def remaining(floats, ints, target, size_at):
     return worst
 
 
+@lean_inlined
+def move_by(mover):
+    """Add what ties push a mover, once all have, to its AT_A and to all that they do."""
+    change = weighed_by(mover, mover[AT_IMPULSE:])
+    for c in range(6):
+        mover[AT_A + c] += change[c]
+        mover[AT_PUSHED + c] += mover[AT_IMPULSE + c]
+        mover[AT_IMPULSE + c] = 0.0
+
+
 @lean(types.void(A, I, A, types.boolean), inner=True)
 def push(floats, ints, right, further):
     """Add the rows' forces ``right`` to AT_FORCE (else write them), what they push to the movers, and to their AT_A."""
-    for m in range(ints[MOVERS]):
-        mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
-        for c in range(6):
-            mover[AT_IMPULSE + c] = 0.0
     row = 0
     for tie in range(ints[TIES]):
         which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
+        if tie + AHEAD < ints[TIES]:
+            fetch_tie(floats, ints, tie + AHEAD)
         a = b = c = d = e = f = u = v = w = x = y = z = 0.0
         to = which[ROWS_FROM]
         for _ in range(which[ROWS_OF]):
@@ -159,31 +202,28 @@ def push(floats, ints, right, further):
             x, y, z = x + own[9] * force, y + own[10] * force, z + own[11] * force
             row += 1
             to += ROW
-        one = floats[which[ONE] + AT_IMPULSE : which[ONE] + AT_IMPULSE + 6]
+        first, second = ints[MOVED_AT] + MOVED * which[ONE], ints[MOVED_AT] + MOVED * which[OTHER]
+        mover = floats[first : first + MOVED]
+        one = mover[AT_IMPULSE : AT_IMPULSE + 6]
         one[0], one[1], one[2] = one[0] + a, one[1] + b, one[2] + c
         one[3], one[4], one[5] = one[3] + d, one[4] + e, one[5] + f
-        two = floats[which[OTHER] + AT_IMPULSE : which[OTHER] + AT_IMPULSE + 6]
+        if which[MARKS] & LAST:
+            move_by(mover)
+        mover = floats[second : second + MOVED]
+        two = mover[AT_IMPULSE : AT_IMPULSE + 6]
         two[0], two[1], two[2] = two[0] + u, two[1] + v, two[2] + w
         two[3], two[4], two[5] = two[3] + x, two[4] + y, two[5] + z
-    for m in range(ints[MOVERS]):
-        mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
-        change = weighed_by(mover, mover[AT_IMPULSE:])
-        for c in range(6):
-            mover[AT_A + c] += change[c]
-            mover[AT_PUSHED + c] += mover[AT_IMPULSE + c]
+        if which[MARKS] & (2 * LAST):
+            move_by(mover)
 
 
 @lean(types.void(A, I, N, N, F))
 def correct(floats, ints, target, size_at, worst):
-    """`balance` where what remains, ``worst`` at most, stands on the right hand side already."""
+    """`balance` where the matrix, and on the right hand side what remains, ``worst`` at most, are written already."""
     right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
     last, found = math.inf, False
     little = LEFT * max(1.0, ints[ROWS] / LONG)
-    for m in range(ints[MOVERS]):
-        mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
-        for c in range(6):
-            mover[AT_PUSHED + c] = 0.0
-    least = factor(floats, ints)
+    least = factor_filled(floats, ints)
     sure = size_at != AT_SIZE and least * max(1.0, ints[ROWS] / SHORT) ** 3 > WELL
     most = 0 if least == 0.0 else 1 if sure else MOST_CORRECTIONS
     for corrections in range(most):
@@ -204,22 +244,19 @@ def correct(floats, ints, target, size_at, worst):
 def balance(floats, ints, target, size_at):
     """Forces of the rows, to AT_FORCE, by which J x + floats[target] = 0 for x the movers' AT_A, which they change.
 
-    floats[size_at] is the size of the numbers that the target is a sum of, if it is to be 0 but for their rounding.
+    What they do to the movers is added to AT_PUSHED. floats[size_at] is the size of the numbers that the target is a
+    sum of, if it is to be 0 but for their rounding.
     """
-    correct(floats, ints, target, size_at, remaining(floats, ints, target, size_at))
-
-
-@lean(types.void(A, A, I))
-def add(rate, floats, ints):
-    """Adds the rows' forces and torques to the entries of velocities and angular momenta."""
-    for m in range(ints[MOVERS]):
-        at, pushed = ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m + AT_PUSHED
-        if ints[at + POSITION] >= 0:
-            for c in range(3):
-                rate[ints[at + VELOCITY] + c] += floats[pushed + c]
-            if ints[at + ROTATION] >= 0:
-                for c in range(3):
-                    rate[ints[at + MOMENTUM] + c] += floats[pushed + 3 + c]
+    right, part = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]], floats[ints[EASE_AT]]
+    worst, row, shared = 0.0, 0, begin_matrix(floats, ints)
+    for tie in range(ints[TIES]):
+        if tie + AHEAD < ints[TIES]:
+            fetch_tie(floats, ints, tie + AHEAD)
+        worst = max(worst, left_of(floats, ints, tie, row, target, size_at, right))
+        shared = add_tie(floats, ints, tie, shared, part)
+        row += ints[ints[TIES_AT] + SIDES * tie + ROWS_OF]
+    end_matrix(floats, ints, part)
+    correct(floats, ints, target, size_at, worst)
 
 
 @lean_inlined
@@ -230,48 +267,64 @@ def unlike(a, b, c, x, y, z):
 
 
 @lean(types.void(A, A, A, I))
-def sharpen(y, rate, floats, ints):
-    """Take the accelerations themselves where the forces of ties on a light body are so large that sums round them."""
+def add(y, rate, floats, ints):
+    """Adds the rows' forces and torques to the entries of velocities and angular momenta.
+
+    Those of the accelerations themselves where the forces of ties on a light body are so large that sums round them.
+    """
     for m in range(ints[MOVERS]):
         at, to = ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m
-        inverse = floats[to + AT_MASS]
-        if ints[at + POSITION] < 0 or inverse == 0.0:
+        if ints[at + POSITION] < 0:
             continue
-        v, x, y_, z = ints[at + VELOCITY], floats[to + AT_A], floats[to + AT_A + 1], floats[to + AT_A + 2]
-        if unlike(inverse * rate[v], inverse * rate[v + 1], inverse * rate[v + 2], x, y_, z):
-            rate[v], rate[v + 1], rate[v + 2] = x / inverse, y_ / inverse, z / inverse
+        body = floats[to : to + MOVED]
+        inverse, v = body[AT_MASS], ints[at + VELOCITY]
+        force = rate[v : v + 3]
+        for c in range(3):
+            force[c] += body[AT_PUSHED + c]
+        x, y_, z = body[AT_A], body[AT_A + 1], body[AT_A + 2]
+        if inverse > 0.0 and unlike(inverse * force[0], inverse * force[1], inverse * force[2], x, y_, z):
+            force[0], force[1], force[2] = x / inverse, y_ / inverse, z / inverse
         if ints[at + ROTATION] >= 0:
             k = ints[at + MOMENTUM]
+            torque = rate[k : k + 3]
+            for c in range(3):
+                torque[c] += body[AT_PUSHED + 3 + c]
             x, y_, z = turning(y, floats, to, k)
-            if unlike(rate[k], rate[k + 1], rate[k + 2], x, y_, z):
-                rate[k], rate[k + 1], rate[k + 2] = x, y_, z
+            if inverse > 0.0 and unlike(torque[0], torque[1], torque[2], x, y_, z):
+                torque[0], torque[1], torque[2] = x, y_, z
 
 
 @lean(TERM, inner=True)
 def hold(t, y, rate, floats, ints):
     """Adds the forces [N] and torques [N m] of all ties."""
     # As `survey` and `balance`, but with each mover and each row looked at once while it is in the cache.
-    for m in range(ints[MOVERS]):
-        to, at = ints[MOVED_AT] + MOVED * m, ints[MOVERS_AT] + MOVER * m
-        see(y, floats, to, ints, at)
-        press(y, rate, floats, to, ints, at)
-    right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
-    worst, row = 0.0, 0
+    right, part = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]], floats[ints[EASE_AT]]
+    worst, row, shared = 0.0, 0, begin_matrix(floats, ints)
     for tie in range(ints[TIES]):
-        count = write_tie(floats, ints, tie, row)
+        which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
+        if tie + AHEAD < ints[TIES]:
+            fetch_tie(floats, ints, tie + AHEAD)
+        for side in range(2):
+            if which[MARKS] & (FRESH << side):
+                m = which[ONE + side]
+                to, at = ints[MOVED_AT] + MOVED * m, ints[MOVERS_AT] + MOVER * m
+                see(y, floats, to, ints, at)
+                press(y, rate, floats, to, ints, at)
+        write_tie(floats, which, ints[MOVED_AT])
         worst = max(worst, left_of(floats, ints, tie, row, AT_BIAS, AT_BIAS, right))
-        row += count
+        shared = add_tie(floats, ints, tie, shared, part)
+        row += which[ROWS_OF]
+    end_matrix(floats, ints, part)
     correct(floats, ints, AT_BIAS, AT_BIAS, worst)
-    add(rate, floats, ints)
-    sharpen(y, rate, floats, ints)
+    add(y, rate, floats, ints)
 
 
 @lean_inlined
 def clear(floats, ints):
-    """Zero the movers' accelerations."""
+    """Zero the movers' accelerations, and what ties push them."""
     for m in range(ints[MOVERS]):
-        for c in range(6):
-            floats[ints[MOVED_AT] + MOVED * m + AT_A + c] = 0.0
+        for c in range(AT_A, MOVED):
+            floats[ints[MOVED_AT] + MOVED * m + c] = 0.0
 
 
 @lean_inlined

@@ -8,7 +8,7 @@ share.
 import numpy as np
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import AT_J, MOVED, ROW, weighed_by
+from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_MASS, MOVED, ROW
 from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.lanes_kernels import fma, load, store
@@ -22,21 +22,27 @@ solve_sparse = lazy("sceneql.linear.multifrontal.solve_kernels:solve_symmetric",
 factor_dense = lazy("sceneql.linear.dense_symmetric_kernels:factor", F(A, N, N, F))
 solve_dense = lazy("sceneql.linear.dense_symmetric_kernels:solve", types.void(A, N, N, A))
 
-MOVERS, ROWS, MOVERS_AT, ROWS_AT, SHARED, SHARED_AT, STARTS_AT, DIAGONAL_AT, PLAN_AT, PLAN = range(10)
-MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_AT, EASE_AT, TIE_AT, TIES = range(
-    10, 22
-)
-TIES_AT, HEAD = 22, 23
-"""Integers of an island's ties: numbers of movers, rows, movers that ties share, of the plan's integers, and where
-each begins; the first values of the matrix's rows, and the places of its diagonal's; offsets into the floats and sizes
-of what movers, matrix, factors, scratch and right hand side take, and what drifts keep (rattle_kernels); of EASE; of T
-of a tie; the number of ties and where their SIDES begin: how many rows, offsets of the floats of these and of both
-movers. Few rows have a matrix that is whole, its factors in place, and no plan. A mover that ties share: their number
-n and its own; of each tie OF_TIE: its first row, how many it has, their floats at its side; then n x n places in a row
-of the first where the rows of the second begin, counted from that row's first value (-1: what stands there is not
-read)."""
-OF_TIE = 3
-ROWS_OF, ROWS_FROM, ONE, OTHER, SIDES = range(5)
+MOVERS, ROWS, MOVERS_AT, ROWS_AT, SHARED_AT, PLAN_AT, PLAN = range(7)
+MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_AT, EASE_AT, TIE_AT, TIES = range(7, 19)
+TIES_AT, DIAGONAL_AT, ENDED_AT, HEAD = 19, 20, 21, 22
+"""Integers of an island's ties: numbers of movers and rows; where the integers of both, of the movers that ties share
+and of the plan begin, and how many the last are; offsets into the floats and sizes of what movers, matrix, factors,
+scratch and right hand side take, and what drifts keep (rattle_kernels); of EASE; of T of a tie; the number of ties and
+where their SIDES begin; the offset of the matrix's diagonal; where the last of what follows begins. Few rows have a
+matrix that is whole, its factors in place, and no plan; else it is in blocks of two ties (rows of one x rows of the
+other), as they are read. A mover that ties share: their number n and its own; where the one before begins (-1: none),
+and which half of T it has; of each tie OF_TIE: its first row, how many it has, their floats at its side, whether its
+own block is complete with this mover; then n x n, twice where the block of two ties begins (-1: it is not read), and 1
+where nothing is there yet. They stand in the order in which ties have had all of theirs."""
+SHARERS, SHARED_MOVER, BEFORE, HALF, OF_SHARED = range(5)
+OF_TIE = 4
+ROWS_OF, ROWS_FROM, ONE, OTHER, KINDS, NUMBERS_FROM, STRIDE, TIE_HOLDS, MARKS, SIDES = range(10)
+"""Integers of a tie: how many rows, offset of the first one's floats; its movers; the kinds of its rows, KIND_BITS
+each, the first one lowest; offset of the numbers of the first one, and of each further one that has some from there; of
+whether it holds; marks."""
+KIND_BITS = 3
+FRESH, LAST = 1, 4
+"""Marks of ONE, and times 2 of OTHER: no tie before has this mover; none behind has it, and it is solved."""
 LANES, T_OF = 8, 48
 """Columns of T of a tie, of which those behind its rows are 0; its numbers."""
 UPPER = np.triu(np.ones((LANES, LANES))).ravel()
@@ -49,56 +55,28 @@ start, so that light bodies may hold heavy ones, but LITTLE where a pivot is not
 
 
 @lean_inlined
-def add_block(values, begins, place, floats, to, t, upper):
-    """Add J of a tie, at floats[to:] and behind, times T of another to their block.
+def add_block(values, at, along, rows, floats, to, t, upper, new):
+    """Add J of a tie, of ``rows`` rows at floats[to:], times T of another to their block, with rows ``along`` apart.
 
-    ``place``: of its values in the rows that begin at ``begins``; ``upper``: to its upper half alone.
+    ``upper``: to its upper half alone; ``new``: nothing is there yet.
     """
     a, b, c, d, e, f = load(t, 0), load(t, LANES), load(t, 16), load(t, 24), load(t, 32), load(t, 40)
-    for i in range(begins.size):
-        six, at = floats[to + ROW * i : to + ROW * i + 6], begins[i] + place
+    if not new:
+        known = load(values, at)
+        for i in range(rows):
+            six = floats[to + ROW * i : to + ROW * i + 6]
+            sums = fma(six[2], c, fma(six[1], b, six[0] * a)) + fma(six[5], f, fma(six[4], e, six[3] * d))
+            # Read before a row that reaches into the next one is written, which would have to be waited for.
+            following = load(values, at + along)
+            store(values, at, known + (sums * load(UPPER, LANES * i) if upper else sums))
+            known = following
+            at += along
+        return
+    for i in range(rows):
+        six = floats[to + ROW * i : to + ROW * i + 6]
         sums = fma(six[2], c, fma(six[1], b, six[0] * a)) + fma(six[5], f, fma(six[4], e, six[3] * d))
-        if upper:
-            sums = sums * load(UPPER, LANES * i)
-        store(values, at, load(values, at) + sums)
-
-
-@lean(types.void(A, I))
-def fill(floats, ints):
-    """Write J T, at least the half of it that is read."""
-    widest()
-    values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
-    for k in range(values.size):
-        values[k] = 0.0
-    at, starts = ints[SHARED_AT], ints[STARTS_AT]
-    # Of a tie's own block the other half is read where its rows are eliminated in any order.
-    half = ints[FACTORS] > 0 and ints[ints[PLAN_AT] + layout.UNIT] > 1
-    for _ in range(ints[SHARED]):
-        count, mover = ints[at], ints[MOVED_AT] + MOVED * ints[at + 1]
-        table = at + 2 + OF_TIE * count
-        m = floats[mover : mover + MOVED]
-        for k in range(count):
-            which = ints[at + 2 + OF_TIE * k : at + 2 + OF_TIE * (k + 1)]
-            own, t = which[2] + AT_J, floats[ints[TIE_AT] + T_OF * k : ints[TIE_AT] + T_OF * (k + 1)]
-            for j in range(which[1]):
-                x, y, z, u, v, w = weighed_by(m, floats[own + ROW * j : own + ROW * j + 6])
-                t[j], t[j + 8], t[j + 16], t[j + 24], t[j + 32], t[j + 40] = x, y, z, u, v, w
-            for j in range(which[1], LANES):
-                t[j] = t[j + 8] = t[j + 16] = t[j + 24] = t[j + 32] = t[j + 40] = 0.0
-        for other in range(count):
-            which = ints[at + 2 + OF_TIE * other : at + 2 + OF_TIE * (other + 1)]
-            columns, beyond = ints[starts + which[0] : starts + which[0] + which[1]], which[2] + AT_J
-            t = floats[ints[TIE_AT] + T_OF * other : ints[TIE_AT] + T_OF * (other + 1)]
-            for one in range(other + 1):
-                which = ints[at + 2 + OF_TIE * one : at + 2 + OF_TIE * (one + 1)]
-                rows = ints[starts + which[0] : starts + which[0] + which[1]]
-                across, along = ints[table + count * one + other], ints[table + count * other + one]
-                if across >= 0:
-                    add_block(values, rows, across, floats, which[2] + AT_J, t, half and one == other)
-                if along >= 0 and one != other:
-                    first = floats[ints[TIE_AT] + T_OF * one : ints[TIE_AT] + T_OF * (one + 1)]
-                    add_block(values, columns, along, floats, beyond, first, False)
-        at = table + count * count
+        store(values, at, sums * load(UPPER, LANES * i) if upper else sums)
+        at += along
 
 
 @lean_inlined
@@ -108,31 +86,135 @@ def stride(ints):
 
 
 @lean_inlined
-def least_pivot(values, factors, ints, plan):
+def end_diagonal(values, at, along, diagonal, part):
+    """Add a part to the diagonal of a block that is complete, and keep it."""
+    for i in range(diagonal.size):
+        # A row that no mass can meet, as of two parts that are led, has no force.
+        value = values[at] * (1.0 + part) if values[at] > 0.0 else 1.0
+        values[at] = diagonal[i] = value
+        at += along + 1
+
+
+@lean(types.void(A, I, N))
+def weigh(floats, ints, at):
+    """Write T of all ties that share the mover of ints[at:]."""
+    mover, half, first = ints[MOVED_AT] + MOVED * ints[at + SHARED_MOVER], ints[at + HALF], at + OF_SHARED
+    m = floats[mover + AT_INVERSE : mover + AT_MASS + 1]
+    xx, yx, zx, xy, yy, zy = m[0], m[1], m[2], m[3], m[4], m[5]
+    xz, yz, zz, inverse = m[6], m[7], m[8], m[AT_MASS - AT_INVERSE]
+    for _ in range(ints[at + SHARERS]):
+        rows, own, t = ints[first + 1], ints[first + 2], floats[half : half + T_OF]
+        for j in range(rows):
+            six = floats[own : own + 6]
+            a, b, c, u, v, w = six[0], six[1], six[2], six[3], six[4], six[5]
+            t[j], t[j + 8], t[j + 16] = inverse * a, inverse * b, inverse * c
+            t[j + 24], t[j + 32] = xx * u + yx * v + zx * w, xy * u + yy * v + zy * w
+            t[j + 40] = xz * u + yz * v + zz * w
+            own += ROW
+        for j in range(rows, LANES):
+            t[j] = t[j + 8] = t[j + 16] = t[j + 24] = t[j + 32] = t[j + 40] = 0.0
+        half += T_OF
+        first += OF_TIE
+
+
+@lean(types.void(A, I, N, F))
+def add_blocks(floats, ints, at, part):
+    """Add what the ties that share the mover of ints[at:] have of J T by it, once their T is written."""
+    widest()
+    values, whole = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]], ints[FACTORS] == 0
+    # Of a tie's own block the other half is read where its rows are eliminated in any order.
+    own_half = not whole and ints[ints[PLAN_AT] + layout.UNIT] > 1
+    count, half, line = ints[at + SHARERS], ints[at + HALF], stride(ints)
+    table = at + OF_SHARED + OF_TIE * count
+    for other in range(count):
+        second = ints[at + OF_SHARED + OF_TIE * other : at + OF_SHARED + OF_TIE * (other + 1)]
+        t = floats[half + T_OF * other : half + T_OF * (other + 1)]
+        for one in range(other + 1):
+            which = ints[at + OF_SHARED + OF_TIE * one : at + OF_SHARED + OF_TIE * (one + 1)]
+            above, below = ints[table + count * one + other], ints[table + count * other + one]
+            if above >= 0:
+                along, upper = line if whole else second[1], own_half and one == other
+                add_block(values, above >> 1, along, which[1], floats, which[2], t, upper, above & 1 == 1)
+            if below >= 0 and one != other:
+                first = floats[half + T_OF * one : half + T_OF * (one + 1)]
+                along = line if whole else which[1]
+                add_block(values, below >> 1, along, second[1], floats, second[2], first, False, below & 1 == 1)
+        if second[3] == 1 and not whole:
+            diagonal = floats[ints[DIAGONAL_AT] + second[0] : ints[DIAGONAL_AT] + second[0] + second[1]]
+            end_diagonal(values, ints[table + (count + 1) * other] >> 1, second[1], diagonal, part)
+
+
+@lean_inlined
+def add_mover(floats, ints, at, part):
+    """Add a mover whose ties are all written to J T; where the next one stands."""
+    weigh(floats, ints, at)
+    # T of the one before has reached the cache: lanes of what was written number by number just now must wait.
+    if ints[at + BEFORE] >= 0:
+        add_blocks(floats, ints, ints[at + BEFORE], part)
+    return at + OF_SHARED + (OF_TIE + ints[at + SHARERS]) * ints[at + SHARERS]
+
+
+@lean_inlined
+def begin_matrix(floats, ints):
+    """Zero J T where it is whole; where the first mover stands that ties share."""
+    if ints[FACTORS] == 0:
+        values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
+        for k in range(values.size):
+            values[k] = 0.0
+    return ints[SHARED_AT]
+
+
+@lean_inlined
+def add_tie(floats, ints, tie, at, part):
+    """Write of J T what the rows of a tie make known; ``at`` and what it returns: as `add_mover`."""
+    marks = ints[ints[TIES_AT] + SIDES * tie + MARKS]
+    if marks & LAST:
+        at = add_mover(floats, ints, at, part)
+    if marks & (2 * LAST):
+        at = add_mover(floats, ints, at, part)
+    return at
+
+
+@lean_inlined
+def end_matrix(floats, ints, part):
+    """Add the last of the movers to J T, and end the diagonal where it is whole."""
+    if ints[ENDED_AT] >= 0:
+        add_blocks(floats, ints, ints[ENDED_AT], part)
+    if ints[FACTORS] == 0:
+        values, along = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]], stride(ints)
+        diagonal = floats[ints[DIAGONAL_AT] : ints[DIAGONAL_AT] + ints[ROWS]]
+        end_diagonal(values, 0, along, diagonal, part)
+
+
+@lean(types.void(A, I, F))
+def fill(floats, ints, part):
+    """Write J T, at least the half of it that is read, with a part of its diagonal added."""
+    at = begin_matrix(floats, ints)
+    for tie in range(ints[TIES]):
+        at = add_tie(floats, ints, tie, at, part)
+    end_matrix(floats, ints, part)
+
+
+@lean_inlined
+def least_pivot(diagonal, factors, plan):
     """The least part of its diagonal that a pivot of sparse factors is; 0 where one is not above 0."""
-    least = 1.0
+    least, order = 1.0, plan[plan[2] : plan[2] + plan[0]]
     for s in range(plan[1]):
         t = layout.HEAD + layout.FIELDS * s
         first, width, height, panel = plan[t], plan[t + 1], plan[t + 2], plan[t + 5]
         for k in range(width):
-            diagonal = values[ints[ints[DIAGONAL_AT] + plan[plan[2] + first + k]]]
             inverse = factors[panel + k * (height + 1)]
-            least = min(least, 1.0 / (inverse * diagonal)) if inverse > 0.0 else 0.0
+            least = min(least, 1.0 / (inverse * diagonal[order[first + k]])) if inverse > 0.0 else 0.0
     return least
 
 
 @lean(F(A, I, F))
 def factor_with(floats, ints, part):
-    """Factor J T with a part of its diagonal added; the least part of it that a pivot is, at most what is added.
+    """Factor J T, with a part of its diagonal added; the least part of it that a pivot is, at most what is added.
 
     0 where the matrix cannot be factored, or, without what is added, where rows depend.
     """
-    fill(floats, ints)
     values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
-    for k in range(ints[ROWS]):
-        place = ints[ints[DIAGONAL_AT] + k]
-        # A row that no mass can meet, as of two parts that are led, has no force.
-        values[place] = values[place] * (1.0 + part) if values[place] > 0.0 else 1.0
     if ints[FACTORS] == 0:
         least = factor_dense(values, ints[ROWS], stride(ints), DEPENDENT if part == 0.0 else 0.0)
         return least if part == 0.0 else min(least, part)
@@ -141,19 +223,30 @@ def factor_with(floats, ints, part):
     work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
     if not factor_sparse(plan, values, factors, work):
         return 0.0
-    least = part if part > 0.0 else least_pivot(values, factors, ints, plan)
+    diagonal = floats[ints[DIAGONAL_AT] : ints[DIAGONAL_AT] + ints[ROWS]]
+    least = part if part > 0.0 else least_pivot(diagonal, factors, plan)
     return least if least > DEPENDENT else 0.0
 
 
 @lean(F(A, I))
+def factor_filled(floats, ints):
+    """`factor` where J T is written, with EASE of its diagonal added."""
+    part = floats[ints[EASE_AT]]
+    least = factor_with(floats, ints, part)
+    if least > 0.0 or part > 0.0:
+        return least
+    fill(floats, ints, LITTLE)
+    return factor_with(floats, ints, LITTLE)
+
+
+@lean_inlined
 def factor(floats, ints):
     """Factor J T; the least part of its diagonal that a pivot is, 0 where it cannot be factored.
 
     Where rows depend on others EASE of the diagonal is added, and LITTLE where they have only come to do so.
     """
-    part = floats[ints[EASE_AT]]
-    least = factor_with(floats, ints, part)
-    return factor_with(floats, ints, LITTLE) if least == 0.0 and part == 0.0 else least
+    fill(floats, ints, floats[ints[EASE_AT]])
+    return factor_filled(floats, ints)
 
 
 @lean(types.void(A, I))

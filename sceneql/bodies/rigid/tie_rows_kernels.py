@@ -260,21 +260,25 @@ def write_ball(rows, b, size, rx, ry, rz, sx, sy, sz, gap, speed, bend):
         row[AT_SIZE] = size
 
 
-@lean(types.void(A, I, N, N, N))
+@lean_inlined
 def write_row(floats, ints, at, a, b):
     """Write the row of ints[at:] between the movers whose floats begin at a and b."""
     which = ints[at : at + ROW_INTS]
-    kind, to = which[KIND], which[SCRATCH]
-    if kind == WRITTEN:
-        return
+    if which[KIND] != WRITTEN:
+        write(floats, which[KIND], which[SCRATCH], which[NUMBERS], floats[which[HOLDS]] != 0.0, a, b)
+
+
+@lean(types.void(A, N, N, N, types.boolean, N, N))
+def write(floats, kind, to, numbers, holds, a, b):
+    """Write a row to floats[to:], of BALL with the two behind it; all 0 if it does not hold."""
     rows = floats[to : to + (3 * ROW if kind == BALL else ROW)]
-    if floats[which[HOLDS]] == 0.0:
+    if not holds:
         for k in range(rows.size):
             rows[k] = 0.0
         for k in range(0, rows.size, ROW):
             rows[k + AT_SIZE] = 1.0
         return
-    one, two, own = floats[a : a + MOVED], floats[b : b + MOVED], floats[which[NUMBERS] : which[NUMBERS] + MOST_NUMBERS]
+    one, two, own = floats[a : a + MOVED], floats[b : b + MOVED], floats[numbers : numbers + MOST_NUMBERS]
     if kind == GEAR:
         write_gear(one, two, own, rows)
         return

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from itertools import chain, product
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.system import Led, Place
 
 if TYPE_CHECKING:
-    from numpy import int64
-    from numpy.typing import NDArray
-
     from sceneql.frame import Floats
     from sceneql.system import Assembly, Mover, Slopes, Tied
 
@@ -27,8 +24,6 @@ MOST = 600
 """Most constraint rows for which contradictions at the start are searched."""
 APART = 1e-6
 """Speed [m/s or rad/s] of a violated tie at the start above which ties contradict each other."""
-WHOLE = 24
-"""Most rows whose matrix is dense: as fast as a multifrontal one, and compiled in a tenth of the time."""
 LEAST = 7
 """Least numbers stored of a row; missing ones are 0."""
 
@@ -39,87 +34,53 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     Raises ScriptError where ties contradict each other at the start.
     """
     import numpy as np
-    from scipy.sparse import csr_array
 
-    from sceneql.bodies.rigid import tie_matrix_kernels as matrix
+    from sceneql.bodies.rigid import tie_matrix_kernels as kernels
     from sceneql.bodies.rigid.tie_kernels import survey
-    from sceneql.bodies.rigid.tie_rows_kernels import MOVED, ROW
+    from sceneql.bodies.rigid.tie_matrix import RowsOfTie, tie_matrix
+    from sceneql.bodies.rigid.tie_rows_kernels import MOVED, MOVER, ROW, ROW_INTS
     from sceneql.bodies.rigid.tie_start import follow
-    from sceneql.linear.multifrontal.planning import plan
 
     movers: dict[tuple[int, ...], int] = {}
     rows: list[tuple[int, ...]] = []
-    sides = []
+    sides: list[RowsOfTie] = []
+    heads: list[list[int]] = []
     for tie in ties:
-        pair = tuple(movers.setdefault(integers(mover), len(movers)) for mover in tie.movers)
-        sides.append((pair, len(rows), len(tie.rows), tie.scratch_at))
-        for k, row in enumerate(tie.rows):
-            numbers = [*chain(*row.vectors), *row.constants]
-            numbers_at = assembly.floats([*numbers, *(0.0 for _ in range(len(numbers), LEAST))])
-            kind = KINDS.index(row.kind)
-            rows.append((kind, *pair, numbers_at, tie.scratch_at + ROW * k, tie.holds_at))
-    solved = [which[0] >= 0 for which in movers]
-    of_mover: dict[int, list[tuple[int, int, int]]] = {}
-    for pair, first, count, scratch in sides:
-        for side, mover in enumerate(pair):
-            if solved[mover]:
-                of_mover.setdefault(mover, []).append((first, count, scratch + 6 * side))
-    # If all ties have equally many rows, the matrix is stored in blocks, whose plan takes far fewer integers.
-    counts, few = {len(tie.rows) for tie in ties}, len(rows) <= WHOLE
-    unit = counts.pop() if len(counts) == 1 and not few else 1
-    parts = {
-        ((one[0] + i) // unit, (other[0] + j) // unit)
-        for some in of_mover.values()
-        for one, other in product(some, some)
-        for i, j in product(range(0, one[1], unit), range(0, other[1], unit))
-    }
-    blocks = len(rows) // unit
-    parts.update(product(range(blocks), range(blocks)) if few else ((k, k) for k in range(blocks)))
-    across = np.array(sorted(parts))
-    pattern = csr_array((np.ones(len(across)), tuple(across.T)), shape=(blocks, blocks))
-    pattern.sort_indices()
-    columns = pattern.indices
-    starts = [unit * (unit * int(pattern.indptr[k // unit]) + k % unit) for k in range(len(rows))]
-    size = unit * unit * len(columns)
-    if few:
-        stride = matrix.LANES * -(-len(rows) // matrix.LANES)
-        starts, size = [k * stride for k in range(len(rows))], stride * len(rows)
-
-    def along(row: int, column: int) -> int:
-        """Offset of the value at a column from the first value of the row."""
-        first, end = pattern.indptr[row // unit : row // unit + 2]
-        return unit * unit * int(np.searchsorted(columns[first:end], column // unit)) + column % unit
-
-    planned = None if few else plan(pattern, unit=unit)
-    unread = set() if planned is None else _unread(planned.numbers)
-
-    def place(one: int, rows: int, other: int, columns: int) -> int:
-        """Offset of the values of two ties from the first value of a row of the first; -1: they are not read."""
-        found = along(one, other)
-        block = [starts[one]] if unit > 1 else [starts[one + i] + j for i in range(rows) for j in range(columns)]
-        return -1 if (few and one > other) or unread.issuperset(at + found for at in block) else found
-
-    shared = [
-        [*(len(some), mover, *chain(*some)), *(place(*one[:2], *other[:2]) for one in some for other in some)]
-        for mover, some in of_mover.items()
-    ]
+        known, of = len(movers), [movers.setdefault(integers(mover), len(movers)) for mover in tie.movers]
+        constants = [[*chain(*row.vectors), *row.constants] for row in tie.rows]
+        stride = max(LEAST, *map(len, constants))
+        numbers_at = assembly.floats([x for some in constants if some for x in (*some, *[0.0] * (stride - len(some)))])
+        kinds = [KINDS.index(row.kind) for row in tie.rows]
+        packed = sum(kind << kernels.KIND_BITS * k for k, kind in enumerate(kinds))
+        heads.append([len(kinds), tie.scratch_at, *of, packed, numbers_at, stride, tie.holds_at])
+        sides.append(RowsOfTie((of[0], of[1]), len(rows), len(rows) + len(kinds), tie.scratch_at, known))
+        for k, (kind, some) in enumerate(zip(kinds, constants, strict=True)):
+            rows.append((kind, *of, numbers_at, tie.scratch_at + ROW * k, tie.holds_at))
+            numbers_at += stride if some else 0
+    matrix = tie_matrix(sides, [which[0] >= 0 for which in movers])
+    for head, marks in zip(heads, matrix.marks, strict=True):
+        head.append(marks)
+    most = kernels.T_OF * max((some[0] for some in matrix.shared), default=0)
+    ease, of_tie = assembly.floats([kernels.EASE]), assembly.floats(np.zeros(2 * most))
+    shared_at, ended_at = kernels.HEAD + MOVER * len(movers) + ROW_INTS * len(rows), -1
+    for sharers in matrix.shared:
+        ended_at, sharers[kernels.BEFORE] = shared_at, ended_at
+        sharers[kernels.HALF] = of_tie + most * sharers[kernels.HALF]
+        shared_at += len(sharers)
     lists: list[Sequence[int]] = [
-        [number for which in movers for number in which],
-        [number for row in rows for number in row],
-        [number for some in shared for number in some],
-        starts,
-        [starts[k] + along(k, k) for k in range(len(rows))],
-        [] if planned is None else planned.numbers.tolist(),
+        *([number for some in parts for number in some] for parts in (movers, rows, matrix.shared)),
+        [] if matrix.plan is None else matrix.plan.numbers.tolist(),
+        [*chain(*heads)],
     ]
-    begins = np.cumsum([matrix.HEAD, *(len(some) for some in lists)]).tolist()
-    spent = (0, 0) if planned is None else (planned.factors, planned.work + len(rows))
-    sizes = (MOVED * len(movers), size + matrix.LANES, *spent, len(rows))
+    begins = np.cumsum([kernels.HEAD, *(len(some) for some in lists)]).tolist()
+    spent = (0, 0) if matrix.plan is None else (matrix.plan.factors, matrix.plan.work + len(rows))
+    sizes = (MOVED * len(movers), matrix.size, *spent, len(rows))
     moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
-    head = [len(movers), len(rows), begins[0], begins[1], len(shared), *begins[2:6], len(lists[5])]
+    for at in matrix.alone:
+        assembly.write(values + at, [1.0])
     free = not any(isinstance(mover, Led) for tie in ties for mover in tie.movers)
-    kept = assembly.floats(np.zeros(matrix.KEPT * len(rows) if free else 0))
-    most = max((len(some) for some in of_mover.values()), default=0)
-    ease, of_tie = assembly.floats([matrix.EASE]), assembly.floats(np.zeros(most * matrix.T_OF))
+    kept = assembly.floats(np.zeros(kernels.KEPT * len(rows) if free else 0))
+    head = [len(movers), len(rows), *begins[:4], len(lists[3])]
     head += [
         moved,
         values,
@@ -132,10 +93,10 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         kept,
         ease,
         of_tie,
-        len(sides),
-        begins[6],
+        len(ties),
+        begins[4],
     ]
-    lists.append([k for pair, _, n, at in sides for k in (n, at, moved + MOVED * pair[0], moved + MOVED * pair[1])])
+    head += [assembly.floats(np.ones(len(rows))), ended_at]
     ints = tuple(int(number) for number in np.concatenate([head, *lists]))
     _add_pivots(assembly, ties)
     numbers = assembly.numbers()
@@ -157,19 +118,6 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
     if free:  # a prescribed motion is known at the end of a step only
         assembly.tied_drift("sceneql.bodies.rigid.rattle_kernels:end_tied", ints)
-
-
-def _unread(planned: NDArray[int64]) -> set[int]:
-    """The first values of the blocks of a symmetric matrix that a plan for it does not read."""
-    from sceneql.linear.multifrontal import layout
-
-    found: set[int] = set()
-    entries = int(planned[5])
-    for front in range(int(planned[1])):
-        at = layout.HEAD + layout.FIELDS * front
-        below, end = int(planned[at + 10]), int(planned[at + layout.FIELDS + 6])
-        found.update(planned[entries + 2 * below : entries + 2 * end : 2].tolist())
-    return found
 
 
 def _must_agree(ties: Sequence[Tied], floats: Floats) -> None:

@@ -14,6 +14,9 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler.annotations import unwrap
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.meant.own_values import in_si
+from sceneql.compiler.meant.unwrapped import unwrapped
+from sceneql.compiler.meant.values_elsewhere import quantities_fitting
 from sceneql.compiler.names import Names
 from sceneql.kinds import Kind
 from sceneql.language.in_group import in_group
@@ -31,6 +34,10 @@ ANGLES = ("angle", "launch_angle", "elevation", "theta")
 _EQUATION = re.compile(r"(?:d\(?(\w+)\)?/dt|(\w+)'|(\w+)_dot)\s*=\s*(.+)")
 SEVERAL = 2
 """Least number of fields that tell the field that they stand in."""
+ANOTHER = "the word says the shape, and its fields stand in it"
+"""Beginning of a help that writes another word in place of the record's."""
+PUSH = "push"
+"""Name of a force in examples."""
 SHOWN = 300
 """Longest value that a message repeats."""
 
@@ -44,8 +51,11 @@ def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> st
         if name == "scale" and "position" in known:
             word = cls.__module__.rpartition(".")[2]
             return f"write its sizes as they shall be, or let a group scale it: `{in_group(word, node.entries)}`"
-        return balls_of(reader.names, node)
-    told = _by_names(reader, cls, name, node) or _inside_one(cls, name, node)
+        if (model := _of_model(reader, name, node.entries[name])) is not None:
+            return model
+        plain = unwrapped(node, cls.family, reader.names.catalogue)
+        return balls_of(reader.names, node) if plain is None else f"{ANOTHER}: write `{plain}`"
+    told = _by_names(reader, cls, name, node) or _inside_one(cls, name, node) or _of_force(reader, cls, name, node)
     return told or _of_one(reader, cls, name, node) or _system(known, name, node) or _thrown(known, name, node)
 
 
@@ -63,10 +73,10 @@ def balls_of(names: Names, node: Node | None) -> str | None:
     return None
 
 
-def judged_as(entry: Entry, family: str, catalogue: Catalogue, names: Names) -> type[Kind] | None:
+def judged_as(entry: Entry, family: str, catalogue: Catalogue, names: Names, help: str) -> type[Kind] | None:
     """The class of the word nearest to an unknown one, whose fields the entry's are judged by; None for none.
 
-    It has to have most of them.
+    It has to have most of them; all of them where the ``help`` for the word writes the entry anew.
     """
     fields, near = entry.fields, nearest(entry.word, words := catalogue.choices(family))
     cls = None if near is None else catalogue.load(family, near)
@@ -77,6 +87,7 @@ def judged_as(entry: Entry, family: str, catalogue: Catalogue, names: Names) -> 
     fits = known.keys() >= fields.entries.keys() and (fields.partial or required <= fields.entries.keys())
     matched = [one for one in (nearest(name, known, STRONG) for name in fields.entries) if one is not None]
     like = nearest(entry.word, words, STRONG) == near and 2 * len(matched) >= len(fields.entries)
+    like = like and "write `{" not in help
     return cls if fits or (like and bool(matched) and required <= {*matched}) else None
 
 
@@ -139,6 +150,46 @@ def _of_one(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str 
             place = f"{reader.owner}.one.position"
             return f"it is told of each: write `{field}: {{one: {{{text}}}}}`; its place is then `{place}`"
     return None
+
+
+def _of_model(reader: Any, name: str, value: Node) -> str | None:
+    """The help for a model's word as a group in the object that it moves: ``Rigidbody: {mass: 2 kg}``."""
+    words = reader.names.catalogue.words("models")
+    word = name if name in words else same_as(name, words)
+    if word is None or not isinstance(value, Mapping) or "." in reader.owner:
+        return None
+    cls = reader.names.catalogue.load("models", word)
+    if cls is None or not {"of", "domain"} & {*cls.model_fields}:
+        return None
+    field = "of" if "of" in cls.model_fields else "domain"
+    fields = "".join(f", {one}: {inner.span.text}" for one, inner in value.entries.items() if one != field)
+    told = f"{{my_{word}: {{{word}: {{{field}: {reader.owner}{fields}}}}}}}"
+    return f"a model is a part of its own, that names the object: write `models: {told}`"
+
+
+def _of_force(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:
+    """The help for a force's word, or one that means it, as a field of a model: ``torque: 0 3 0 N*m``.
+
+    With the value where the force has one field for it; of a torque's size alone, about y.
+    """
+    catalogue, value = reader.names.catalogue, node.entries[name]
+    word = same_as(name, catalogue.words("forces")) if issubclass(cls, kinds.Model) else None
+    force = None if word is None else catalogue.load("forces", word)
+    if force is None or not isinstance(value, Scalar) or "." in reader.owner:
+        return None
+    fields = list(quantities_fitting(reader, value, force.model_fields))
+    components = dict(force.model_fields).get("components")
+    text = value.span.text
+    if components is not None and (size := in_si(text)):
+        fields, many = ["components"], [f"{number:g}" for number in size]
+        text = f"[{', '.join(many if len(many) > 1 else ['0', many[0], '0'])}]"
+    if len(fields) != 1:
+        return None
+    told = f"{{{word}: {{{kinds.written_name(fields[0])}: {text}, on: [{reader.owner}]}}}}"
+    others = {one: entry for one, entry in reader.names.parts.items() if catalogue.load("forces", entry.word)}
+    listed = all(one == entry.word and entry.fields is None for one, entry in others.items())
+    section = f"[{', '.join([*others, told])}]" if listed else f"{{..., {PUSH}: {told}}}"
+    return f"forces are a section of their own: write `forces: {section}`"
 
 
 def _system(known: Collection[str], name: str, node: Mapping) -> str | None:

@@ -25,8 +25,9 @@ from sceneql.language.compose import compose_node
 from sceneql.language.sections import empty
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, same_as
+from sceneql.quantities.instead import instead
 from sceneql.quantities.literal import vector_meant
-from sceneql.quantities.spaced import per_unit
+from sceneql.quantities.spaced import between_times, mean_and_more, per_unit
 from sceneql.quantities.span import Source
 from sceneql.quantities.units import format_quantity
 
@@ -37,6 +38,7 @@ STEPS, TRIES = 6, 24
 _FRAMES = re.compile(r"(\d+(?:\.\d+)?)\s*(?:frames?|f)")
 _SHOWN = re.compile(r"`([^`]+)`")
 _NUMBER = re.compile(r"(?<![\w.])\d+\.?\d*(?:[eE][-+]?\d+)?")
+_TIMES = re.compile(r"(?<=\d)[x×](?=\d)")  # 1920x1080
 _WRITTEN = re.compile(r"(?:write|is written|did you mean) [`']([^`]+?)[`'](?:\?|;|,|:|$| )")
 
 
@@ -77,10 +79,24 @@ def better_alone(
     info = field_of(cls, name)
     helped.by_own_density(reader, written, before)
     by_own_size(reader, written, cls, name, before)
+    if len(found) == before:
+        return
     told = [(one.code, one.help) for one in found[before:]]
+    known = [kinds.written_name(key) for key in cls.model_fields]
+    varies = "variation" in known and name in (field_of(cls, "variation").description or "")
+    if varies and (varied := middle_of_ends(name, node, known)) is not None:
+        found[before:] = [replace(found[before], help=varied)]
+        return
+    about = mean_and_more(node.span.text) if "tolerance" in known and "tolerance" not in written else None
+    if about is not None:
+        told_apart = f"{name}: {about[0]} {about[2]}".rstrip() + f", tolerance: {about[1]} {about[2]}".rstrip()
+        found[before] = replace(found[before], help=f"how far it may be off stands apart: `{told_apart}`")
+        return
     if len(told) != 1:
         return
     code, help = told[0]
+    if code == "out-of-range" and "fixed" in known and help is not None and help == instead("zero", name):
+        found[before] = replace(found[before], help=helped.of_fixed(written, name))
     if code == "unknown-name" and helped.is_part(reader, node):
         found[before] = replace(found[before], help=helped.other_output(reader, node, info, name) or help)
     elif code == "unknown-name" and any(mark.direction for mark in quantities(info)) and node.span.text in AXES:
@@ -107,8 +123,9 @@ def better_alone(
         found[before] = replace(found[before], help=f"what is counted has no unit: write `{counted[1]} /{unit}`")
     single = [mark.shape == () for mark in quantities(info)]
     if (help or "").startswith("two ends stand") and single and all(single):
-        fields = [kinds.written_name(key) for key in cls.model_fields]
-        found[before] = replace(found[before], help=middle_of_ends(name, node, fields) or help)
+        mean = middle_of_ends(name, node, ())
+        fits = mean is not None and not _errors(reader, mean.split("`")[1].partition(": ")[2], cls, name)
+        found[before] = replace(found[before], help=mean if fits else between_times(node.span.text) or help)
     if (help or "").endswith("a number for each axis"):
         found[before] = replace(found[before], help=along_default(node, info) or help)
     if help is not None or code not in ("wrong-shape", "dimension-mismatch"):
@@ -124,8 +141,7 @@ def better_alone(
     if better is None and found[before].message.endswith(PLANAR):
         better = "a number is missing: it has one for each of x, y and z"
     if better is None and found[before].message.startswith(f"{name}{SINGLE}"):
-        fields = [kinds.written_name(key) for key in cls.model_fields]
-        better = (middle_of_ends(name, node, fields) if "variation" in fields else None) or first_of(name, node)
+        better = first_of(name, node)
     if better is None and pointing and not shaped:
         better = helped.direction_alone(node)
     if better is None and not shaped:
@@ -138,6 +154,8 @@ def _one_for_all(node: Node, info: Any, name: str, title: str) -> str | None:
     marks = [mark for mark in quantities(info) if mark.shape == () and mark.dimension is not None]
     if not marks or not isinstance(node, Scalar) or not re.search(r"(?<![\w.])[xyz](?![\w.(])", node.text):
         return None
+    if (other := instead(f"place.{title}", name)) is not None:
+        return other
     more = f"; `sceneql words {title}` tells what goes by place" if title.isidentifier() else ""
     return f"it is one value, the same at all places, as `{name}: {format_quantity(1.0, marks[0].dimension)}`{more}"
 
@@ -275,7 +293,7 @@ def _around(node: Node, start: int, end: int) -> tuple[int, int]:
 def _keeps(text: str, better: str, names: Names) -> bool:
     """Whether a text has all numbers of another in their order, no others but 0 and 1, and its names that are known."""
     left = iter(own := _NUMBER.findall(better))
-    before = _NUMBER.findall(text)
+    before = _NUMBER.findall(_TIMES.sub(" ", text))
     words = [one for one in re.findall(r"[^\W\d]\w*", text) if one in names.defines or one in names.parts]
     spare = {one: own.count(one) for one in own if one not in ("0", "1")}
     known = all(spare[one] <= before.count(one) for one in spare) and all(

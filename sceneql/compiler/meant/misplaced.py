@@ -12,6 +12,7 @@ from typing import Any, get_args
 from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.meant.chained import mended
 from sceneql.compiler.meant.likely import wrong_as
 from sceneql.compiler.meant.together import together
 from sceneql.compiler.meant.unknown import DEFAULT, having_fields
@@ -96,9 +97,9 @@ class _Section:
         field = _field(cls, self.key, exact)
         given = self.script.root.entries.get(SETTING)
         own = given.entries if isinstance(given, Mapping) else {}
-        if field is not None and field not in own and self._takes(cls, field, self.value):
+        if field is not None and field not in own and (text := self._taken(cls, field)) is not None:
             fields = [f"{name}: {one_line(one)}" for name, one in own.items()]
-            yield f"{SETTING}: {{{', '.join([*fields, f'{field}: {one_line(self.value)}'])}}}"
+            yield f"{SETTING}: {{{', '.join([*fields, f'{field}: {text}'])}}}"
 
     def _word(self, exact: bool) -> Iterator[str]:
         """It as a word of a family, with its fields, or with a value of one of them: ``gravity: 1.62 m/s^2``."""
@@ -157,13 +158,14 @@ class _Section:
 
     def _in_word(self, exact: bool) -> Iterator[str]:
         """It as a field of a part of the script, or of a word: ``layout: [{each: variant}]`` of a video."""
-        text = one_line(self.value)
         for family in ORDER if exact or not self.own else ORDER[:PLAIN]:
             for name, entry in self.script.sections.get(family, {}).items():
                 cls = self.catalogue.load(family, entry.word)
                 field = None if cls is None else _field(cls, self.key, exact)
                 given = entry.fields.entries if isinstance(entry.fields, Mapping) else {}
-                if cls is not None and field is not None and field not in given and self._takes(cls, field, self.value):
+                if cls is None or field is None or field in given:
+                    continue
+                if (text := self._taken(cls, field)) is not None:
                     inner = ", ".join(
                         [*(f"{one}: {one_line(node)}" for one, node in given.items()), f"{field}: {text}"]
                     )
@@ -172,8 +174,15 @@ class _Section:
             for word in dict.fromkeys([*usual, *self.catalogue.words(family)]):
                 cls = self.catalogue.load(family, word)
                 field = None if cls is None else _field(cls, self.key, exact)
-                if cls is not None and field is not None and self._takes(cls, field, self.value):
+                if cls is not None and field is not None and (text := self._taken(cls, field)) is not None:
                     yield self._part(family, NAMES.get(family, "name"), f"{{{word}: {{{field}: {text}}}}}")
+
+    def _taken(self, cls: type[BaseModel], field: str) -> str | None:
+        """Its value as a field of a record takes it: as it is written, or with its mistakes mended."""
+        if self._takes(cls, field, self.value):
+            return one_line(self.value)
+        found = mended(self.reader, self.value, cls, field) if isinstance(self.value, Scalar) else None
+        return None if found is None else found[0]
 
     def _takes(self, cls: type[BaseModel], field: str, value: Node) -> bool:
         """Whether a field of a record accepts a value."""

@@ -37,6 +37,8 @@ ANSWERS = (*TRUE, "false", "no", "off")
 FRAMES = 30
 """Frames a second of a film that says nothing else."""
 _BY_FRAME = re.compile(r"([-+.\d]+)\s*/\s*frames?")
+WITHOUT = ("for a product", "units are such", "did you mean", "a number of", "what is counted")
+"""Beginnings of helps for an unknown unit behind a number that has none."""
 OUTPUTS = 3
 """Largest number of outputs that a message offers."""
 _NUMBERS = re.compile(r"((?:[-+]?[\d.]+(?:[eE][-+]?\d+)?\s+)*[-+]?[\d.]+(?:[eE][-+]?\d+)?)\s+[^\W\d]\S*")
@@ -89,7 +91,7 @@ def number_meant(node: Node, info: Any, name: str, code: str, help: str | None) 
         number = re.fullmatch(r"([-+.\d]+(?:[eE][-+]?\d+)?)\s*[^\W\d]\w*", node.span.text)
         known = [mark.dimension for mark in marks if mark.dimension is not None]
         plain = all(one.plain for one in known) if known else info.annotation in (int, float)
-        plain = plain and (help or "").startswith(("for a product", "units are such", "did you mean"))
+        plain = plain and (help or "").startswith(WITHOUT)
         return f"it has no unit: write `{name}: {number[1]}`" if number is not None and plain else None
     if node.span.text.lower() in ANSWERS and marks:
         example = next((format_quantity(1.0, one) for mark in marks if (one := mark.dimension) is not None), "1")
@@ -174,6 +176,14 @@ def by_own_density(reader: Any, written: Mapping[str, Node], first: int) -> None
     text = own.span.text if own.span.text[:1].isdigit() else format_quantity(float(value.number()), DENSITY)
     for k in lacking:
         errors[k] = replace(errors[k], help=errors[k].help.replace(WATER, f"({text})"))
+
+
+def of_fixed(written: Mapping[str, Node], name: str) -> str:
+    """The help for a mass of zero, by which other programs tell what never moves, where `fixed` tells that."""
+    text, fixed = f"{name}: {written[name].span.text}", written.get("fixed")
+    if fixed is not None and fixed.span.text.lower() in TRUE:
+        return f"`fixed: {fixed.span.text}` says that it never moves: leave out `{text}`"
+    return f"what never moves is told by `fixed: yes` in place of `{text}`; what is light has a small {name}"
 
 
 def warn_of_hertz(expr: Expr, mark: kinds.Quantity, found: Diagnostics) -> None:

@@ -5,13 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Collection
 from collections.abc import Sequence as Sequenced
+from math import atan, degrees
 
+from sceneql.compiler.meant.own_values import in_si
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import same_as
 from sceneql.quantities.literal import vector_meant
 
 _FIRST = re.compile(r"\{(\w+): [<\[]")
-_BLANK = re.compile(r"<(\w+)\|([^>]*)>")
+_BLANK = re.compile(r"<(\w+)(#?)\|([^>]*)>")
 CELLS = ("cells", "resolution", "grid", "n", "divisions", "nodes", "points")
 """Fields of other programs for a number of cells."""
 _QUANTITY = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?) ?([^\W\d]\w*)?")
@@ -32,6 +34,17 @@ KEYED = ("curve", "cycle", "delay", "then")
 """Fields of keyframes."""
 SLOW = ("slowmo", "slowmotion", "slowdown", "slow")
 STRENGTHS = ("value", "strength", "magnitude", "torque", "force", "size", "amount", "moment")
+LENSES, FILM = ("focal_length", "lens", "focallength"), 24.0
+"""Fields of other programs for a lens, and the height of its film [mm]."""
+CONE = (
+    ("radius_top", "top_radius", "radiustop", "r2"),
+    ("radius_bottom", "bottom_radius", "radiusbottom", "r1"),
+)
+"""Fields of other programs for a cone's radii at the top and at the bottom."""
+THIN = 0.01
+"""Factor of a taper to a point."""
+TYPES = ("type", "kind", "model", "name")
+"""Fields by which other programs tell which of several groups the others are in."""
 WAYS = ("axis", "direction", "about", "dir")
 """Fields of other programs for a vector's size and its direction."""
 SIZES = ("width", "height", "depth", "length")
@@ -52,6 +65,7 @@ def together(name: str, unknown: Sequenced[str], node: Mapping, known: Collectio
     told = told or _corners(name, unknown, node, known) or _members(name, unknown, node, known)
     told = told or _states(name, unknown, node, known) or _slower(name, node, known)
     told = told or _along(name, unknown, node, known) or _shown(name, unknown, node, known)
+    told = told or _typed(name, unknown, node, known) or _lens(name, node, known) or _cone(name, unknown, node, known)
     told = told or _of_keys(name, node) or _drag(name, unknown, node, known) or _two_places(name, node, known)
     if told is not None:
         return told
@@ -88,6 +102,8 @@ def _empty(node: Node) -> bool:
 def filled(help: str, value: Node, known: Collection[str]) -> str:
     """A help text in which `<position|0 1 0 m>` is the text of the value's field `position`, or what stands behind.
 
+    `<radii#|1 1 1>` is its numbers in SI, without their unit.
+
     Its other fields that are among the ``known`` ones, by another name too, stand behind those of the text.
     """
     fields = dict(value.entries) if isinstance(value, Mapping) else {}
@@ -98,7 +114,10 @@ def filled(help: str, value: Node, known: Collection[str]) -> str:
 
     def fill(blank: re.Match[str]) -> str:
         key = next((one for one in fields if one == blank[1] or same_as(one, [blank[1]]) is not None), None)
-        return blank[2] if key is None else fields.pop(key).span.text
+        text = None if key is None else fields.pop(key).span.text
+        if text is None or not blank[2]:
+            return text or blank[3]
+        return " ".join(f"{number:.6g}" for number in in_si(text)) or blank[3]
 
     text = _BLANK.sub(fill, help)
     more = {one if one in known else same_as(one, known): node.span.text for one, node in fields.items()}
@@ -255,3 +274,37 @@ def _of_keys(name: str, node: Mapping) -> str | None:
         return None
     told = f"{keyed}: {{keys: {{...}}, {name}: {node.entries[name].span.text}}}"
     return f"it stands beside `keys`, in the same braces: write `{told}`"
+
+
+def _typed(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for a field that tells which of the record's groups the others are in: ``type: linear, modulus: ..``."""
+    told = next((one for one in unknown if one in TYPES and node.entries[one].span.text in known), None)
+    if told is None or (name != told and name not in unknown):
+        return None
+    inner = ", ".join(f"{one}: {node.entries[one].span.text}" for one in unknown if one != told)
+    return f"its fields stand inside of its name: write `{{{node.entries[told].span.text}: {{{inner}}}}}`"
+
+
+def _lens(name: str, node: Mapping, known: Collection[str]) -> str | None:
+    """The help for a focal length in place of an angle of view, in a camera whose picture is 24 mm high."""
+    length = _numbers(node.entries[name].span.text)
+    if name not in LENSES or "field_of_view" not in known or length is None or length[1] not in ("", "mm"):
+        return None
+    if length[0][0] <= 0.0:
+        return None
+    angle = degrees(2.0 * atan(FILM / 2.0 / length[0][0]))
+    return f"a lens of {length[0][0]:g} mm sees, upright, `field_of_view: {angle:.3g} deg`: write that"
+
+
+def _cone(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for the two radii of a cone beside the fields of a cylinder."""
+    top, bottom = (next((one for one in unknown if one.lower() in ends), None) for ends in CONE)
+    if top is None or bottom is None or name not in (top, bottom) or "radius" in node.entries:
+        return None
+    upper, lower = (_numbers(node.entries[one].span.text) for one in (top, bottom))
+    if upper is None or lower is None or upper[1] != lower[1] or lower[0][0] <= 0.0:
+        return None
+    rest = "".join(f", {one}: {value.span.text}" for one, value in node.entries.items() if one in known)
+    inner = f"{{cylinder: {{radius: {node.entries[bottom].span.text}{rest}}}}}"
+    factor = max(upper[0][0] / lower[0][0], THIN)
+    return f"a cone is a cylinder that is tapered: write `{{taper: {{of: {inner}, factor: {factor:.3g}}}}}`"

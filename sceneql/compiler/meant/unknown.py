@@ -13,7 +13,9 @@ from pydantic import BaseModel
 
 from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.meant.own_values import with_own
 from sceneql.compiler.meant.together import filled, together
+from sceneql.compiler.meant.unwrapped import unwrapped
 from sceneql.compiler.names import Vocabulary
 from sceneql.compiler.vector_fields import ENDS
 from sceneql.kinds import written_name
@@ -39,6 +41,8 @@ OFF = ("0", "0.0", "no", "false")
 """Texts of a field that says that something is not."""
 SHOWN = 160
 """Longest list of instances that a message repeats."""
+WITHOUT = "\0"
+"""What lets helps differ that tell of no remedy, and so do not make one mistake of two."""
 FEW = 4
 """Largest number of words with a field by which it is told what has that field."""
 
@@ -71,6 +75,7 @@ def report_unknown(
     """
     offer = renamed or (lambda field, value: (True, f"did you mean '{field}'?"))
     unknown = [name for name in node.entries if name not in known]
+    told: dict[str, list[str]] = {}
     for name in unknown:
         help = together(name, unknown, node, known)
         help = (
@@ -98,8 +103,12 @@ def report_unknown(
         if help is None and table and table not in node.entries:
             inner = ", ".join(f"{one}: {node.entries[one].span.text}" for one in unknown)
             help = f"names of your own stand in `{table}`: write `{table}: {{{inner}}}`"
-        help = help or "it has " + ", ".join(known)
-        found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)
+        for one in (name, *unknown) if help else ():
+            help = with_own(help or "", one, node.entries[one].span.text)
+        told.setdefault(help or f"it has {', '.join(known)}{len(told) * WITHOUT}", []).append(name)
+    for help, names in told.items():
+        text = f"field '{names[0]}'" if len(names) == 1 else f"fields {', '.join(map(repr, names))}"
+        found.error("unknown-field", f"{title} has no {text}", node.keys[names[0]].span, help=help.rstrip(WITHOUT))
     return not unknown
 
 
@@ -115,7 +124,10 @@ def _ends(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[s
 
 
 def _flat(name: str, value: Node, known: Collection[str]) -> str | None:
-    """The help for a group of fields that stand among the others here."""
+    """The help for a group of fields that stand among the others here, or a group in it."""
+    inner = next(iter(value.entries.values())) if isinstance(value, Mapping) and len(value.entries) == 1 else None
+    if isinstance(inner, Mapping) and not {*value.entries} & {*known}:  # type: ignore[union-attr]
+        return _flat(name, inner, known)
     if not isinstance(value, Mapping) or not value.entries or not all(inner in known for inner in value.entries):
         return None
     told = ", ".join(f"{inner}: {node.span.text}" for inner, node in value.entries.items())
@@ -179,6 +191,10 @@ def word_meant(
     if (replaced := _field_of_replaced(entry, family, script, catalogue)) is not None:
         return replaced
     words, fields = catalogue.choices(family), entry.fields
+    if (plain := unwrapped(fields, family, catalogue)) is not None:
+        return f"the word says the shape, and its fields stand in it: write `{plain}`"
+    if family == "materials" and isinstance(fields, Mapping) and (looks := _told(fields, words, family, catalogue)):
+        return looks
     inner = next(iter(fields.entries)) if isinstance(fields, Mapping) and len(fields.entries) == 1 else ""
     if fields is not None and entry.name == entry.word and catalogue.load(family, inner) is not None:
         return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.span.text}}}`"
@@ -235,6 +251,8 @@ def word_meant(
 def _instead(entry: Entry, family: str) -> str | None:
     """The sentence on a word of other programs, with the entry's own values."""
     other, place = instead(family, entry.word), entry.span
+    if other is not None and entry.fields is not None and not isinstance(entry.fields, Mapping):
+        return re.sub(r"<\w+#?[|][^>]*>", entry.fields.span.text.replace("\\", r"\\"), other, count=1)
     nothing = Mapping({}, {}, True, place.source, place.start, place.end)
     return None if other is None else filled(other, entry.fields if isinstance(entry.fields, Mapping) else nothing, ())
 
@@ -316,6 +334,8 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
     having, text = having_fields(list(node.entries), family, catalogue), node.span.text
     if (meant := _told(node, having or catalogue.choices(family), family, catalogue)) is not None:
         return meant
+    if not having and (renamed := _renamed(node, family, catalogue)) is not None:
+        return f"the word stands around its fields: write `{renamed}`"
     for name, value in () if having else node.entries.items():
         having = having_fields([name], family, catalogue)
         text = f"{{{name}: {value.span.text}}}"
@@ -324,6 +344,18 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
     return (
         f"the word stands around its fields, {', '.join(having)}: write `{{{having[0]}: {text}}}`" if having else None
     )
+
+
+def _renamed(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
+    """Fields, some of them by names of other programs, in the first word of a family that has them all."""
+    for word in sorted(catalogue.choices(family), key=lambda one: one != DEFAULT.get(family)):
+        cls = catalogue.load(family, word)
+        known = [] if cls is None else [written_name(name) for name in cls.model_fields]
+        named = {one: one if one in known else same_as(one, known) for one in node.entries}
+        if node.entries and all(named.values()) and len({*named.values()}) == len(named):
+            told = ", ".join(f"{named[one]}: {value.span.text}" for one, value in node.entries.items())
+            return f"{{{word}: {{{told}}}}}"
+    return None
 
 
 def _told(node: Mapping, words: Collection[str], family: str, catalogue: Catalogue) -> str | None:

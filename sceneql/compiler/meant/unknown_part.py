@@ -55,6 +55,15 @@ def several_meant(node: Sequence, mark: Refers, entry: Entry, catalogue: Catalog
     return f"several together are one: write `{{union: {{of: {node.span.text}}}}}`"
 
 
+def word_for_name(place: str, node: Node, mark: Refers, catalogue: Catalogue) -> str | None:
+    """The help for fields in a mapping of parts whose word, the end of their place, stands where a name does."""
+    word = place.rpartition(".")[2]
+    words = catalogue.choices(mark.family)
+    if word not in words or not isinstance(node, Mapping) or any(key in words for key in node.entries):
+        return None
+    return f"`{word}` is taken for a name here: write a list of parts, `[{{{word}: {{...}}}}, ...]`"
+
+
 def warn_of_another(
     node: Scalar, family: str, user: str, entries: Naming[str, Entry], family_of: Naming[str, str], found: Diagnostics
 ) -> None:

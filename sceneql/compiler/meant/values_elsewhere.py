@@ -5,18 +5,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
+from collections.abc import Mapping as Naming
 from dataclasses import replace
 from typing import Any
 
 from sceneql import kinds
 from sceneql.compiler import values
 from sceneql.compiler.annotations import quantities
-from sceneql.language.tree import Node, Sequence
+from sceneql.compiler.vector_fields import ENDS
+from sceneql.language.tree import Mapping, Node, Sequence
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.dimension import VELOCITY
 from sceneql.quantities.literal import vector_meant
-from sceneql.quantities.spaced import two_ends
+from sceneql.quantities.spaced import mean_and_more, two_ends
 
 AXES, PAIR = 3, 2
 """Components of a vector in space, and ends of a range."""
@@ -34,7 +36,7 @@ def first_of(name: str, node: Node) -> str | None:
     return f"it is one number: write `{name}: {first}`{others}" if first else None
 
 
-def elsewhere(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
+def elsewhere(reader: Any, node: Node, info: Any, others: Naming[str, Any]) -> str | None:
     """The help for a wrong count of numbers: the one other field that takes them."""
     found = {name: mark for name, mark in quantities_fitting(reader, node, others).items() if mark.shape}
     if len(found) > 1:
@@ -45,7 +47,7 @@ def elsewhere(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> 
     return f"that is what `{(name := kinds.written_name(*found))}` takes: write `{name}: {node.span.text}`"
 
 
-def quantities_fitting(reader: Any, node: Node, fields: Mapping[str, Any]) -> dict[str, kinds.Quantity]:
+def quantities_fitting(reader: Any, node: Node, fields: Naming[str, Any]) -> dict[str, kinds.Quantity]:
     """The fields of quantities that accept a value."""
     nothing = Diagnostics()
     names = replace(reader.names, found=nothing)
@@ -70,13 +72,25 @@ def along_default(node: Node, info: Any) -> str | None:
 
 def middle_of_ends(name: str, node: Node, fields: Collection[str]) -> str | None:
     """The help for the two ends of a range where a field is one number: the mean, and what lets it vary, if any."""
-    text = node.span.text
+    text = node.span.text.strip("\"'")
     if isinstance(node, Sequence) and len(node.items) == PAIR:
         text = vector_meant(", ".join(item.span.text for item in node.items)) or ""
-    ends = two_ends(text) or (text if isinstance(node, Sequence) else None)
+    if isinstance(node, Mapping):
+        text = _of_fields(node)
+    if (about := mean_and_more(text)) is not None:
+        middle, more, of = about
+        text = f"{float(middle) - float(more):.6g} {float(middle) + float(more):.6g} {of}".strip()
+    ends = two_ends(text) or (text if about or isinstance(node, Sequence | Mapping) else None)
     if ends is None or len(ends.split()) < PAIR:
         return None
     low, high, *unit = ends.split()
     mean, half = (float(low) + float(high)) / 2, (float(high) - float(low)) / 2
-    varied = f", and `variation: {half / mean:.2g}` beside it" if "variation" in fields and mean > 0 else ""
+    varied = f", and `variation: {half / mean:.2g}` beside it" if "variation" in fields and mean > half >= 0 else ""
     return f"it is one number, as their mean: write `{name}: {' '.join([f'{mean:.6g}', *unit])}`{varied}"
+
+
+def _of_fields(node: Mapping) -> str:
+    """Two ends by names, ``{min: 1 s, max: 3 s}``, or a mean and a deviation, as a vector of two; empty for others."""
+    texts = {key: value.span.text for key, value in node.entries.items()}
+    pair = next((pair for pair in zip(*ENDS, strict=False) if {*pair} == {*texts}), None)
+    return "" if pair is None else vector_meant(", ".join(texts[key] for key in pair)) or ""

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Model, Tie
-from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.diagnostic import Diagnostics, Note
 
 
 def report_contacts(tasks: Mapping[str, Task], groups: Iterable[Island], found: Diagnostics) -> None:
@@ -65,16 +65,31 @@ def _report_shared(
             word, other = before[held[name]]
             if other == name:
                 text = f"'{name}' has its contacts in '{word}', and all contacts of a rigid body are solved together"
-                help = f"name all that '{name}' touches in '{word}'"
             else:
                 text = (
                     f"a tie holds '{name}' to '{other}', which has its contacts in '{word}': they are solved together"
                 )
-                help = f"name all that both touch in '{word}'"
-            found.error("invalid", text, tasks[contact].span, help=help)
+            place = tasks[word].span
+            notes = [] if place is None else [Note(f"'{word}' is here", place)]
+            found.error("invalid", text, tasks[contact].span, help=_as_one(tasks[word], tasks[contact]), notes=notes)
             break
         for name in turning:
             before.setdefault(held[name], (contact, name))
+
+
+def _as_one(first: Task, second: Task) -> str:
+    """What to write in place of two contacts of one rigid body: the first, with all that both name."""
+    both = [getattr(one.kind, "between", None) for one in (first, second)]
+    left_out = f"leave out '{second.name}', as a body has one law for all that it touches"
+    given = {name: getattr(second.kind, name) for name in second.kind.model_fields_set if name != "between"}
+    fields = [f"`{name}: {one.span.text}`" for name, one in sorted(given.items()) if getattr(one, "span", None)]
+    left_out += f"; {', '.join(fields)} would stand in '{first.name}', for all" if fields else ""
+    if both[0] is None:
+        return f"'{first.name}' names nothing, and so is of all: {left_out}"
+    if both[1] is None:
+        return f"write '{first.name}' without `between`, which is of all, and {left_out}"
+    names = dict.fromkeys(ref.name for refs in both for ref in refs or ())
+    return f"write `between: [{', '.join(names)}]` in '{first.name}', and {left_out}"
 
 
 def _held(island: Island, tasks: Mapping[str, Task]) -> dict[str, str]:

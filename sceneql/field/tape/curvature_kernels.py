@@ -6,6 +6,7 @@ import numpy as np
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.interval_kernels import outward, squared
 from sceneql.field.enclose.slope_kernels import branches, divided, single_slopes, times
+from sceneql.field.skeleton.density_curvature_kernels import density_curvature
 from sceneql.field.tape import tape_ops as ops
 
 
@@ -40,17 +41,21 @@ def of_power(low, high, a, b, n):
     return p, q, r, s
 
 
-@lean("boolean(int32[:, ::1], float64[:, ::1], float64[:, ::1])")
-def curvature(code, scratch, second):
+@lean("boolean(int32[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])")
+def curvature(code, parts, scratch, second):
     """Bounds of the second derivatives along x, y and z of all rows into ``second`` (rows, 6); whether all are known.
 
     For the box for which ``box`` left WHOLE, and ``steepness`` finite bounds, in scratch. Unknown are those of
-    densities and angles, and where branches of min, max and abs meet.
+    skeletons and angles, and where branches of min, max and abs meet.
     """
     for k in range(code.shape[0]):
         op, left, right = code[k, 0], code[k, 1], code[k, 2]
-        if op == ops.DENSITY or op == ops.SKELETON or op == ops.ATAN2:
+        if op == ops.SKELETON or op == ops.ATAN2:
             return False
+        if op == ops.DENSITY:
+            if not density_curvature(parts, left, right, scratch, second, k, code[k, 3]):
+                return False
+            continue
         if op <= ops.Z:
             for column in range(6):
                 second[k, column] = 0.0

@@ -2,43 +2,20 @@
 """The surface in a block: the cubes that it crosses, with their variants, and its vertices on grid edges."""
 
 from sceneql.compiled.kernels import inlined, lean
-from sceneql.field.tape.batch_kernels import LANES, along_z, evaluate
+from sceneql.field.tape.batch_kernels import LANES
 from sceneql.field.tape.simplify_kernels import simplify
 from sceneql.field.tape.tape_ops import TAPE
 from sceneql.mesh.cubes.cull_kernels import CLEAR, CUT, REACH, verdict
 from sceneql.mesh.cubes.decide_kernels import CASES, decide
 from sceneql.mesh.cubes.grid import BLOCK
+from sceneql.mesh.cubes.hidden_kernels import look_into
 from sceneql.mesh.cubes.polish_kernels import DX, DY, DZ, FA, FB, SIDE, UNDEFINED, A, B, T, normals, polish
+from sceneql.mesh.cubes.sample_kernels import NODES, sample
 
-NODES = BLOCK + 1
-"""Nodes along a block; those on its high sides are shared with its neighbors."""
-LAYERS = NODES // -(-NODES // (LANES // NODES**2))
-"""Layers of nodes that are sampled at once: equal shares of NODES, as many as LANES have room for."""
 EDGES = 3 * BLOCK**3
 """Edges that a block owns: the three from each node upward, for nodes not on its high sides."""
 VERTICES, CUBES, TRIANGLES, OWN = range(4)
 """Columns of a block's tally: vertices on edges, cubes, triangles, inner vertices."""
-
-
-@inlined
-def sample(code, constants, parts, registers, rest, points, grid, i, j, k, values):
-    """f at the nodes of the block whose first node is (i, j, k), x fastest; ``rest`` (rows, 4) is room for a tape.
-
-    Layers are sampled LAYERS at a time; rows of the tape that do not depend on z are evaluated for the first ones only.
-    """
-    h = grid[3]
-    last = code.shape[0] - 1
-    n = LAYERS * NODES * NODES
-    along_z(code, rest)
-    for lane in range(n):
-        points[0, lane] = grid[0] + (i + lane % NODES) * h
-        points[1, lane] = grid[1] + (j + lane // NODES % NODES) * h
-    for z in range(0, NODES, LAYERS):
-        for lane in range(n):
-            points[2, lane] = grid[2] + (k + z + lane // NODES**2) * h
-        evaluate(code if z == 0 else rest[: code.shape[0]], constants, parts, registers, points, n)
-        for lane in range(n):
-            values[z * NODES**2 + lane] = registers[last, lane]
 
 
 @inlined
@@ -161,28 +138,32 @@ def vertices_of(
 
 
 @lean(
-    f"UniTuple(int64, 2)({TAPE}, int32[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, :, ::1],"
-    " float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1], int64[::1], float64[::1],"
+    f"UniTuple(int64, 3)({TAPE}, int32[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, :, ::1],"
+    " float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1], float64[::1], int64[::1], float64[::1],"
+    " int64[:, ::1], float64[:, ::1],"
     f" float64[::1], int32[:, ::1], {CASES}, int32[::1], int32[::1],"
-    " int16[::1], float64[:, ::1], float64[:, ::1], int32[:, ::1], int64[:, ::1])"
+    " int16[::1], float64[:, ::1], float64[:, ::1], int32[:, ::1], int64[:, ::1],"
+    " int64, int64, int32[:, ::1], float64[::1], boolean[::1])"
 )
 def extract(
     code, constants, parts, scratch, short, near, registers, slope,
-    points, starts, search, values, masks, corners,
+    points, starts, search, values, nearest, masks, corners, stack, second,
     grid, blocks, first, faces, tunnel, start, own,
-    keys, place, normal, cubes, tally,
+    keys, place, normal, cubes, tally, deepest, finer, cells, rest, seen,
 ):  # fmt: skip
-    """Vertices, normals, edge keys and cubes of some blocks, in order; returns (vertices, cubes).
+    """Vertices, normals, edge keys and cubes of some blocks, in order; returns (vertices, cubes, hidden cubes).
 
     ``tally`` (blocks, 4) counts by block. Consecutive blocks in one box of REACH a side share the tape simplified for
     the box. ``short`` (3, rows, 4), ``near`` (2, parts, 8), ``registers``, ``slope``, ``points``, ``starts``,
-    ``search``, ``values``, ``masks`` and ``corners`` are working memory.
+    ``search``, ``values`` to ``second`` are working memory. Cubes without a change of sign are looked into as in
+    ``hidden``, unless ``deepest`` < 0.
     """
     wide = REACH * BLOCK
     x = y = z = -1
     rows1 = used1 = 0
     vertices = 0
     found = 0
+    doubts = 0
     for b in range(blocks.shape[0]):
         i = blocks[b, 0] * BLOCK
         j = blocks[b, 1] * BLOCK
@@ -202,13 +183,17 @@ def extract(
         code2 = short[1][:rows]
         parts2 = near[1][:used]
         sample(code2, constants, parts2, registers, short[2], points, grid, i, j, k, values)
-        if not insides(values, masks):
-            continue
-        found = cubes_of(values, masks, corners, first, faces, tunnel, start, own, cubes, found, tally[b])
-        before = vertices
-        vertices = vertices_of(
-            code2, constants, parts2, registers, slope, points, starts, search,
-            grid, i, j, k, values, masks, keys, vertices, place, normal,
-        )  # fmt: skip
-        tally[b, VERTICES] = vertices - before
-    return vertices, found
+        if insides(values, masks):
+            found = cubes_of(values, masks, corners, first, faces, tunnel, start, own, cubes, found, tally[b])
+            before = vertices
+            vertices = vertices_of(
+                code2, constants, parts2, registers, slope, points, starts, search,
+                grid, i, j, k, values, masks, keys, vertices, place, normal,
+            )  # fmt: skip
+            tally[b, VERTICES] = vertices - before
+        if deepest >= 0:
+            doubts = look_into(
+                code, constants, parts, scratch, code2, parts2, short[2], registers, points, values, nearest,
+                stack, second, grid, i, j, k, 255, deepest, finer, cells, rest, seen, doubts,
+            )  # fmt: skip
+    return vertices, found, doubts

@@ -11,19 +11,27 @@ from sceneql.field.tape.batch_kernels import LANES
 from sceneql.field.tape.tape_solid import scratch
 from sceneql.mesh.cubes.cases import cases
 from sceneql.mesh.cubes.cull_kernels import REACH, cull
-from sceneql.mesh.cubes.extract_kernels import CUBES, EDGES, NODES, OWN, TRIANGLES, VERTICES, extract
+from sceneql.mesh.cubes.extract_kernels import CUBES, EDGES, OWN, TRIANGLES, VERTICES, extract
 from sceneql.mesh.cubes.grid import BLOCK
 from sceneql.mesh.cubes.hidden_kernels import DEEPEST
 from sceneql.mesh.cubes.polish_kernels import ROWS
+from sceneql.mesh.cubes.sample_kernels import NODES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from sceneql.frame import Floats, Ints, Tape
     from sceneql.mesh.cubes.grid import Grid
 
+    Hidden = tuple[Ints, Floats, NDArray[np.bool_]]
+
 BATCH = 32
 """Blocks of one task of a thread."""
+UNLOOKED = -1
+"""In place of a number of halvings: cells are not looked into."""
 
 
 class Room:
@@ -39,7 +47,8 @@ class Room:
         self.registers = np.empty((rows, LANES))
         self.slope = np.empty((rows, 3, LANES))
         self.points, self.starts, self.search = np.empty((3, LANES)), np.empty((3, LANES)), np.empty((ROWS, LANES))
-        self.values, self.masks = np.empty(NODES**3), np.empty(NODES**2, dtype=np.int64)
+        self.values, self.nearest = np.empty(2 * NODES**3), np.empty(NODES**3)
+        self.masks = np.empty(NODES**2, dtype=np.int64)
         self.corners = np.empty(8)
         self.keys = np.empty(BATCH * EDGES, dtype=np.int16)
         self.place, self.normal = np.empty((BATCH * EDGES, 3)), np.empty((BATCH * EDGES, 3))
@@ -108,6 +117,10 @@ class GridExtraction:
 
     def extracted(self, blocks: Ints) -> Found:
         """The surface in some blocks; an edge on the high side of a block belongs to its neighbor there."""
+        return self.looked_into(blocks, UNLOOKED, 0)[0]
+
+    def looked_into(self, blocks: Ints, deepest: int, finer: int) -> tuple[Found, Hidden]:
+        """The surface in some blocks, and their cells that may hide more (kernel ``hidden``)."""
         import numpy as np
 
         table = cases()
@@ -117,20 +130,33 @@ class GridExtraction:
         def work(batch: int) -> None:
             r, mine = self.room(), blocks[batch * BATCH : (batch + 1) * BATCH]
             tally = np.empty((len(mine), 4), dtype=np.int64)
-            vertices, cubes = extract(
+            most = 0 if deepest == UNLOOKED else len(mine) * BLOCK**3
+            cells, rest, seen = np.empty((most, 3), dtype=np.int32), np.empty(most), np.empty(most, dtype=bool)
+            vertices, cubes, doubts = extract(
                 *self.program, r.scratch, r.short, r.near, r.registers, r.slope, r.points, r.starts, r.search,
-                r.values, r.masks, r.corners, self.grid.numbers, mine, table.first, table.faces, table.tunnel,
-                table.start, table.centers, r.keys, r.place, r.normal, r.cubes, tally,
+                r.values, r.nearest, r.masks, r.corners, r.stack, r.second, self.grid.numbers, mine, table.first,
+                table.faces, table.tunnel, table.start, table.centers, r.keys, r.place, r.normal, r.cubes, tally,
+                deepest, finer, cells, rest, seen,
             )  # fmt: skip
             copies: list[Any] = [r.keys[:vertices], r.cubes[:cubes], r.place[:vertices], r.normal[:vertices]]
+            copies += [cells[:doubts], rest[:doubts], seen[:doubts]]
             batches[batch] = (tally, *(copy.copy() for copy in copies))
 
         over_tiles(count, work)
-        return gathered(blocks, batches)
+        return gathered(blocks, batches), joined([batch[-3:] for batch in batches])
 
     def over_blocks(self, count: int, work: Callable[[Room, int, int], None]) -> None:
         """Call ``work(room, first, last)`` for batches of ``count`` blocks, on all threads."""
         over_tiles(-(-count // BATCH), lambda b: work(self.room(), b * BATCH, min((b + 1) * BATCH, count)))
+
+
+def joined(batches: list[Hidden]) -> Hidden:
+    """What may be hidden in batches of blocks as one."""
+    import numpy as np
+
+    none = np.zeros((0, 3), np.int32), np.zeros(0), np.zeros(0, bool)
+    where, volumes, seen = (np.concatenate(column) for column in zip(none, *batches, strict=True))
+    return where, volumes, seen
 
 
 def gathered(blocks: Ints, batches: list[Any]) -> Found:
@@ -139,33 +165,30 @@ def gathered(blocks: Ints, batches: list[Any]) -> Found:
 
     empty = np.zeros((0, 4), np.int64), np.zeros(0, np.int16), np.zeros((0, 2), np.int32)
     tally, keys, cubes = (np.concatenate([none, *(batch[k] for batch in batches)]) for k, none in enumerate(empty))
-    begin, cube_at, triangle_at, own_at = (
-        np.concatenate([[0], np.cumsum(tally[:, column])]) for column in (VERTICES, CUBES, TRIANGLES, OWN)
-    )
+    at = np.zeros((4, len(blocks) + 1), dtype=np.int64)
+    np.cumsum(tally.T, axis=1, out=at[:, 1:])
+    begin, own_at = at[VERTICES], at[OWN]
     own_at += begin[-1]
-    place, normal = np.empty((int(own_at[-1]), 3)), np.empty((int(own_at[-1]), 3))
+    place, normal = np.empty((2, int(own_at[-1]), 3))
     for array, k in ((place, 3), (normal, 4)):
         array[begin[-1] :] = 0.0
         for b, batch in enumerate(batches):
             array[begin[b * BATCH] :][: len(batch[k])] = batch[k]
-    return Found(blocks, beyond(blocks), begin, cube_at, triangle_at, own_at, keys, cubes, place, normal)
+    return Found(blocks, beyond(blocks), begin, at[CUBES], at[TRIANGLES], own_at, keys, cubes, place, normal)
 
 
 def beyond(blocks: Ints) -> Ints:
     """(b, 8) as in Found, for distinct blocks (b, 3)."""
     import numpy as np
 
-    found = np.full((len(blocks), 8), -1, dtype=np.int32)
     if not len(blocks):
-        return found
+        return np.empty((0, 8), dtype=np.int32)
     size = blocks.max(axis=0).astype(np.int64) + 2
-
     strides = np.array([1, size[0], size[0] * size[1]])
     numbers = blocks @ strides
     order = np.argsort(numbers)
     ascending = numbers[order]
-    for bits in range(8):
-        wanted = numbers + np.array([bits & 1, bits >> 1 & 1, bits >> 2]) @ strides
-        at = np.minimum(np.searchsorted(ascending, wanted), len(blocks) - 1)
-        found[:, bits] = np.where(ascending[at] == wanted, order[at], -1)
+    wanted = numbers[:, None] + np.array([[bits & 1, bits >> 1 & 1, bits >> 2] for bits in range(8)]) @ strides
+    at = np.minimum(np.searchsorted(ascending, wanted), len(blocks) - 1)
+    found: Ints = np.where(ascending[at] == wanted, order[at], -1).astype(np.int32)
     return found

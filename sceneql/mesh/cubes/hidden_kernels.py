@@ -12,15 +12,17 @@ from sceneql.field.tape.steepness_kernels import steepness, turning
 from sceneql.field.tape.tape_kernels import value
 from sceneql.field.tape.tape_ops import MAX, MIN, NOWHERE, TAPE, WHOLE
 from sceneql.mesh.cubes.cull_kernels import CLEAR, CUT, verdict
-from sceneql.mesh.cubes.extract_kernels import NODES, sample
 from sceneql.mesh.cubes.grid import BLOCK
+from sceneql.mesh.cubes.sample_kernels import NODES, sample
 
 SIDE = BLOCK // 2
-"""Pairs of cubes along a block."""
+"""Cubes along an eighth of a block, and pairs of cubes along a block."""
 DEEPEST = 2
 """How often a cube may be halved before it is left unresolved."""
 WIDER = 1.0 + 1.0e-12
 """Factor of a cube's side for its rounding."""
+UNKNOWN = 1.0e300
+"""In place of a bound where there is none."""
 SHALLOW = 1.0e-12
 """Depth to which f may go to the other side of zero by rounding, where it touches zero."""
 CAP = 0.125
@@ -46,50 +48,61 @@ def deciding(code, scratch):
 
 
 @inlined
-def enough(code, constants, parts, scratch, second, h):
-    """The least f, and the least -f, at the corners of a cube of side ``h`` that prove its inside to have their sign.
+def steep_and_bent(code, constants, parts, scratch, second):
+    """What ``enough`` takes for cubes in the box for which ``box`` left WHOLE in scratch; infinite where unknown.
 
-    For all such cubes in the box for which ``box`` left WHOLE: by the axes along which f is monotone, or by its second
-    derivatives, which bound how far it lies from what is linear along each axis between the corners.
+    (how steep f is along the axes in which it may rise and fall, how bent it is upward, how bent it is downward).
     """
     gx, gy, gz = steepness(code, constants, parts, scratch)
-    if not gx + gy + gz < 1.0e300:
-        return 1.0e300, 1.0e300
+    if not gx + gy + gz < UNKNOWN:
+        return np.inf, np.inf, np.inf
     last = code.shape[0] - 1
-    turn = 0.5 * h * turning(scratch, last) * (1.0 + 1.0e-9)
-    if turn == 0.0 or not curvature(code, scratch, second):
-        return turn, turn
+    turn = 0.5 * turning(scratch, last) * (1.0 + 1.0e-9)
+    if turn == 0.0 or not curvature(code, parts, scratch, second):
+        return turn, np.inf, np.inf
     below, above = bulge(second, last)
-    return min(turn, h * h * below * (1.0 + 1.0e-9)), min(turn, h * h * above * (1.0 + 1.0e-9))
+    return turn, below * (1.0 + 1.0e-9), above * (1.0 + 1.0e-9)
+
+
+@inlined
+def enough(steep, bent, h):
+    """The least |f| at the corners of a cube of side ``h``, all of one sign, that proves its inside to have this sign.
+
+    By the axes along which f is monotone, or by its second derivatives, which bound how far it lies from what is linear
+    along each axis between the corners.
+    """
+    return min(min(steep * h, bent * h * h), UNKNOWN)
 
 
 @inlined
 def proved(code, constants, parts, scratch, second, x, y, z, half, negative, least):
-    """(whether f is proved to keep its sign in the box of half side ``half`` about a point, way, thickness).
+    """(whether f is proved to keep its sign within ``half`` of a point along each axis, way, thickness, steep, bent).
 
     By its range, by the mean value form, or, as in ``enough``, by ``least``, the least |f| at the box's corners.
-    Without a proof, f may have the other sign only up to a ``thickness`` [m] from a face, ``way`` as ``bulged`` has it.
+    Without a proof, f may have the other sign only up to a ``thickness`` [m] from a face, ``way`` as ``bulged`` has it;
+    ``steep`` and ``bent`` are for ``enough``, of cubes in the box.
     """
     low, high, status = box(
         code, constants, parts, scratch, x - half, x + half, y - half, y + half, z - half, z + half
     )  # fmt: skip
     if status == NOWHERE:
-        return not negative, 0, np.inf
+        return not negative, 0, np.inf, np.inf, np.inf
     if negative:
         if status != WHOLE:
-            return False, 0, np.inf
+            return False, 0, np.inf, np.inf, np.inf
         if high < SHALLOW:
-            return True, 0, 0.0
+            return True, 0, 0.0, np.inf, np.inf
     elif low >= -SHALLOW:
-        return True, 0, 0.0
+        return True, 0, 0.0, np.inf, np.inf
     if status != WHOLE:
-        return False, 0, np.inf
-    outer, inner = enough(code, constants, parts, scratch, second, 2.0 * half)
-    deep = (inner if negative else outer) - least
+        return False, 0, np.inf, np.inf, np.inf
+    steep, upward, downward = steep_and_bent(code, constants, parts, scratch, second)
+    bent = downward if negative else upward
+    deep = enough(steep, bent, 2.0 * half) - least
     if deep < 0.0:
-        return True, 0, 0.0
-    if not outer < 1.0e300:
-        return False, 0, np.inf
+        return True, 0, 0.0, steep, bent
+    if not steep < UNKNOWN:
+        return False, 0, np.inf, steep, bent
     last = code.shape[0] - 1
     slope, steepest, way = 0.0, 0.0, 0
     for axis in range(3):
@@ -103,6 +116,8 @@ def proved(code, constants, parts, scratch, second, x, y, z, half, negative, lea
         abs(f) > half * slope * (1.0 + 1.0e-9) and (f < 0.0) == negative,
         way,
         deep / steepest if steepest > 0.0 else np.inf,
+        steep,
+        bent,
     )
 
 
@@ -140,10 +155,10 @@ def nodes_of(code, constants, parts, registers, points, x, y, z, step, nodes):
 
 @inlined
 def doubtful(
-    code, constants, parts, scratch, second, registers, points, x, y, z, h, negative, deepest, stack,
+    code, constants, parts, scratch, second, registers, points, x, y, z, h, negative, steep, bent, deepest, stack,
 ):  # fmt: skip
     """Volume [m^3] of the parts of the cube of side ``h`` from (x, y, z) on that are not proved to have its corners'
-    sign, halved up to ``deepest`` times.
+    sign, halved up to ``deepest`` times; ``steep`` and ``bent`` are for ``enough``, of cubes in it.
     """
     if deepest == 0:
         return h * h * h
@@ -165,6 +180,8 @@ def doubtful(
         wide = 1 << (deepest - depth)
         side = step * wide
         some = of_corners(values, nodes, i, j, k, wide)
+        if some[0] == negative and enough(steep, bent, side * WIDER) < some[1] < np.inf:
+            continue
         if proved(
             code, constants, parts, scratch, second,
             x + (i + 0.5 * wide) * step, y + (j + 0.5 * wide) * step, z + (k + 0.5 * wide) * step,
@@ -202,23 +219,151 @@ def of_corners(values, nodes, x, y, z, wide):
 
 
 @inlined
-def crossed(code, constants, parts, registers, points, x, y, z, step, nodes, negative):
-    """Whether f has the other sign at one of ``nodes`` nodes along each axis from (x, y, z) on."""
-    nodes_of(code, constants, parts, registers, points, x, y, z, step, nodes)
-    values = registers[code.shape[0] - 1]
+def least_at_corners(values, nearest):
+    """f at the corner of each cube of a block where it is nearest to zero; infinite where signs differ.
+
+    ``values`` (2 NODES^3,) holds f at the nodes, then the greatest f at the corners of each cube; both arrays are laid
+    out by the cubes' first nodes. Where f is undefined it counts as zero.
+    """
+    last = NODES**3
+    for p in range(last):
+        nearest[p] = values[p] if values[p] == values[p] else 0.0
+        values[last + p] = nearest[p]
+    for axis in range(3):
+        step = NODES**axis
+        for p in range(last - step):
+            v, w = nearest[p], nearest[p + step]
+            nearest[p] = v if v < w else w
+            v, w = values[last + p], values[last + p + step]
+            values[last + p] = v if v > w else w
+    for p in range(last):
+        most = values[last + p]
+        nearest[p] = most if most < 0.0 else nearest[p] if nearest[p] >= 0.0 else np.inf
+
+
+@inlined
+def in_doubt(nearest, x0, y0, z0, wide, outer, inner):
+    """Whether of the cubes from (x0, y0, z0) on, ``wide`` along each axis, one with corners of one sign is not proved
+    by ``outer`` and ``inner``, as ``enough`` gives them.
+    """
+    some = False
+    for row in range(wide * wide):
+        p = ((z0 + row // wide) * NODES + y0 + row % wide) * NODES + x0
+        for x in range(wide):
+            some |= -inner <= nearest[p + x] <= outer
+    return some
+
+
+@inlined
+def told_by_nodes(values, nodes, h, negative, steep, bent):
+    """(whether f has the other sign at one of the ``nodes`` nodes along each axis of a cube, whether it is proved not
+    to have it anywhere), by ``enough`` for the cubes of side ``h`` between the nodes.
+    """
     for lane in range(nodes * nodes * nodes):
         if (values[lane] < 0.0) != negative:
-            return True
-    return False
+            return True, False
+    need, between = enough(steep, bent, h * WIDER), nodes - 1
+    for n in range(between * between * between):
+        x, y, z = n % between, n // between % between, n // (between * between)
+        if not of_corners(values, nodes, x, y, z, 1)[1] > need:
+            return False, False
+    return False, True
+
+
+@lean(
+    f"int64({TAPE}, int32[:, ::1], float64[:, ::1], int32[:, ::1], float64[:, ::1], float64[:, ::1],"
+    " float64[::1], float64[::1], int64[:, ::1], float64[:, ::1], float64[::1], int64, int64, int64, int64, int64,"
+    " int64, int32[:, ::1], float64[::1], boolean[::1], int64)"
+)
+def look_into(
+    code, constants, parts, scratch, code2, parts2, short, registers, points, values, nearest, stack, second, grid,
+    i, j, k, eighths, deepest, finer, cells, rest, seen, count,
+):  # fmt: skip
+    """Find the cubes of a block as ``hidden`` does, and write them from ``count`` on; returns the next place.
+
+    ``code2`` and ``parts2`` are the tape simplified for the block, ``values`` what ``sample`` made of them; ``short``
+    (rows, 4) is room for a tape.
+    """
+    h = grid[3]
+    outer = inner = UNKNOWN
+    if verdict(code2, constants, parts2, scratch, grid, i, j, k, BLOCK) == CUT:
+        decides = deciding(code2, scratch) + 1
+        if decides < code2.shape[0]:
+            code2 = code2[:decides]
+            sample(code2, constants, parts2, registers, short, points, grid, i, j, k, values)
+        steep, upward, downward = steep_and_bent(code2, constants, parts2, scratch, second)
+        outer, inner = enough(steep, upward, h), enough(steep, downward, h)
+    least_at_corners(values, nearest)
+    if not in_doubt(nearest, 0, 0, 0, BLOCK, outer, inner):
+        return count
+    far, deep, code3 = outer, inner, code2
+    for part in range(SIDE**3):
+        eighth = part >> 3
+        if eighths >> eighth & 1 == 0:
+            continue
+        x0 = (eighth & 1) * SIDE + (part & 1) * 2
+        y0 = (eighth >> 1 & 1) * SIDE + (part >> 1 & 1) * 2
+        z0 = (eighth >> 2) * SIDE + (part >> 2 & 1) * 2
+        if part & 7 == 0:  # what is known of an eighth, and then of eight cubes, proves most of them
+            far, deep, code3 = outer, inner, code2
+            if in_doubt(nearest, x0, y0, z0, SIDE, far, deep):
+                x, y, z, wide = grid[0] + (i + x0) * h, grid[1] + (j + y0) * h, grid[2] + (k + z0) * h, SIDE * h
+                status = box(code2, constants, parts2, scratch, x, x + wide, y, y + wide, z, z + wide)[2]
+                if status == WHOLE:
+                    code3 = code2[: deciding(code2, scratch) + 1]
+                    steep, upward, downward = steep_and_bent(code3, constants, parts2, scratch, second)
+                    far, deep = min(far, enough(steep, upward, h)), min(deep, enough(steep, downward, h))
+        if not in_doubt(nearest, x0, y0, z0, 2, far, deep):
+            continue
+        x, y, z = grid[0] + (i + x0) * h, grid[1] + (j + y0) * h, grid[2] + (k + z0) * h
+        low, high, status = box(code3, constants, parts2, scratch, x, x + 2.0 * h, y, y + 2.0 * h, z, z + 2.0 * h)
+        outside, inside, code4 = far, deep, code3
+        if status == WHOLE:
+            code4 = code3[: deciding(code3, scratch) + 1]
+            steep, upward, downward = steep_and_bent(code4, constants, parts2, scratch, second)
+            outside, inside = min(far, enough(steep, upward, h)), min(deep, enough(steep, downward, h))
+        for n in range(8):
+            x, y, z = x0 + (n & 1), y0 + (n >> 1 & 1), z0 + (n >> 2)
+            signed = nearest[(z * NODES + y) * NODES + x]
+            negative, least = signed < 0.0, abs(signed)
+            if not -inside <= signed <= outside or (
+                status == WHOLE and high < SHALLOW if negative else low >= -SHALLOW
+            ):
+                continue
+            u, v, w = grid[0] + (i + x) * h, grid[1] + (j + y) * h, grid[2] + (k + z) * h
+            sure, way, thick, steep, bent = proved(
+                code4, constants, parts2, scratch, second,
+                u + 0.5 * h, v + 0.5 * h, w + 0.5 * h, 0.5 * h * WIDER, negative, least,
+            )  # fmt: skip
+            if sure or (thick <= CAP * h and bulged(code, constants, parts, scratch, u, v, w, h, negative, way)):
+                continue
+            other = False
+            if finer > 1:
+                nodes_of(code4, constants, parts2, registers, points, u, v, w, h / finer, finer + 1)
+                found = registers[code4.shape[0] - 1]
+                other, sure = told_by_nodes(found, finer + 1, h / finer, negative, steep, bent)
+                if sure:
+                    continue
+            seen[count] = other
+            rest[count] = doubtful(
+                code4, constants, parts2, scratch, second, registers, points,
+                u, v, w, h, negative, steep, bent, 0 if other else deepest, stack,
+            )  # fmt: skip
+            if rest[count] > 0.0:
+                cells[count, 0] = i + x
+                cells[count, 1] = j + y
+                cells[count, 2] = k + z
+                count += 1
+    return count
 
 
 @lean(
     f"int64({TAPE}, int32[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1],"
-    " float64[::1], int64[:, ::1], float64[:, ::1], float64[::1], int32[:, ::1], uint8[::1], int64, int64,"
-    " int32[:, ::1], float64[::1], boolean[::1])"
+    " float64[::1], float64[::1], int64[:, ::1], float64[:, ::1], float64[::1], int32[:, ::1], uint8[::1], int64,"
+    " int64, int32[:, ::1], float64[::1], boolean[::1])"
 )
 def hidden(
-    code, constants, parts, scratch, short, near, registers, points, values, stack, second, grid, blocks,
+    code, constants, parts, scratch, short, near, registers, points, values, nearest, stack, second, grid, blocks,
     eighths, deepest, finer, cells, rest, seen,
 ):  # fmt: skip
     """Find the cubes of some blocks with corners of one sign, but no proof for their inside; returns their number.
@@ -228,7 +373,6 @@ def hidden(
     ``cells`` (n, 3), the volumes [m^3] without a proof into ``rest``, and into ``seen`` whether f has the other sign at
     a node of cells ``finer`` times as fine, at most 5: such cubes are not halved.
     """
-    h = grid[3]
     count = 0
     for b in range(blocks.shape[0]):
         i = blocks[b, 0] * BLOCK
@@ -240,52 +384,9 @@ def hidden(
         rows, used = simplify(code, parts, scratch, at == CUT, short[1], near[1])
         code2 = short[1][:rows]
         parts2 = near[1][:used]
-        outer = inner = 1.0e300
-        if verdict(code2, constants, parts2, scratch, grid, i, j, k, BLOCK) == CUT:
-            code2 = code2[: deciding(code2, scratch) + 1]
-            outer, inner = enough(code2, constants, parts2, scratch, second, h)
         sample(code2, constants, parts2, registers, short[2], points, grid, i, j, k, values)
-        for part in range(SIDE**3):
-            x0, y0, z0 = 2 * (part % SIDE), 2 * (part // SIDE % SIDE), 2 * (part // SIDE**2)
-            if eighths[b] >> (x0 // SIDE + y0 // SIDE * 2 + z0 // SIDE * 4) & 1 == 0:
-                continue
-            some = False
-            for n in range(8):
-                negative, least = of_corners(values, NODES, x0 + (n & 1), y0 + (n >> 1 & 1), z0 + (n >> 2), 1)
-                some = some or least <= (inner if negative else outer)
-            if not some:
-                continue
-            # Of eight cubes at once: most are proved by what is known of all.
-            x, y, z = grid[0] + (i + x0) * h, grid[1] + (j + y0) * h, grid[2] + (k + z0) * h
-            low, high, status = box(code2, constants, parts2, scratch, x, x + 2.0 * h, y, y + 2.0 * h, z, z + 2.0 * h)
-            outside, inside = outer, inner
-            if status == WHOLE:
-                outside, inside = enough(code2, constants, parts2, scratch, second, h)
-                outside, inside = min(outside, outer), min(inside, inner)
-            for n in range(8):
-                x, y, z = x0 + (n & 1), y0 + (n >> 1 & 1), z0 + (n >> 2)
-                negative, least = of_corners(values, NODES, x, y, z, 1)
-                if least > (inside if negative else outside) or (
-                    status == WHOLE and high < SHALLOW if negative else low >= -SHALLOW
-                ):
-                    continue
-                u, v, w = grid[0] + (i + x) * h, grid[1] + (j + y) * h, grid[2] + (k + z) * h
-                sure, way, thick = proved(
-                    code2, constants, parts2, scratch, second,
-                    u + 0.5 * h, v + 0.5 * h, w + 0.5 * h, 0.5 * h * WIDER, negative, least,
-                )  # fmt: skip
-                if sure or (thick <= CAP * h and bulged(code, constants, parts, scratch, u, v, w, h, negative, way)):
-                    continue
-                seen[count] = finer > 1 and crossed(
-                    code2, constants, parts2, registers, points, u, v, w, h / finer, finer + 1, negative
-                )
-                rest[count] = doubtful(
-                    code2, constants, parts2, scratch, second, registers, points,
-                    u, v, w, h, negative, 0 if seen[count] else deepest, stack,
-                )  # fmt: skip
-                if rest[count] > 0.0:
-                    cells[count, 0] = i + x
-                    cells[count, 1] = j + y
-                    cells[count, 2] = k + z
-                    count += 1
+        count = look_into(
+            code, constants, parts, scratch, code2, parts2, short[2], registers, points, values, nearest,
+            stack, second, grid, i, j, k, eighths[b], deepest, finer, cells, rest, seen, count,
+        )  # fmt: skip
     return count

@@ -44,9 +44,16 @@ class Level:
         """(c, 3) places of the cells that the surface meets."""
         import numpy as np
 
-        counts = np.diff(self._found.cube_at[: self._blocks + 1])
-        owner = np.repeat(self._found.blocks[: self._blocks].astype(np.int64), counts, axis=0)
-        return BLOCK * owner + _within(self._found.cubes[: len(self.bent), 0].astype(np.int64))
+        return self.places_of(np.arange(len(self.bent)))
+
+    def places_of(self, cells: Keys) -> Keys:
+        """(n, 3) places of some of the cells ``met``, by their numbers."""
+        import numpy as np
+
+        block = np.searchsorted(self._found.cube_at[1 : self._blocks + 1], cells, side="right")
+        within = _within(self._found.cubes[cells, 0].astype(np.int64))
+        found: Keys = BLOCK * self._found.blocks[block].astype(np.int64) + within
+        return found
 
     @cached_property
     def cells(self) -> Keys:

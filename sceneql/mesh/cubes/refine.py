@@ -76,7 +76,8 @@ def refined(
     whole, grid = bounded(tape, low, high), grid_around(low, high, cell)
     shop, numbers = GridExtraction(whole, grid), Numbering(grid)
     blocks = shop.met()
-    coarse, doubt = Level(shop, shop.extracted(blocks), len(blocks)), hidden_in(shop, blocks, 1, FINE)
+    found, (where, volumes, seen) = shop.looked_into(blocks, 1, FINE)
+    coarse, doubt = Level(shop, found, len(blocks)), Unresolved(where, volumes, grid, seen)
     for cells, parts, most in _to_cut(whole, coarse, grid.cell, tolerance):
         group = BLOCK // parts  # coarse cells along a group, which is one block of the fine grid
         groups = _distinct(np.concatenate([cells, doubt.where[doubt.seen]]) // group, numbers)
@@ -85,7 +86,7 @@ def refined(
         if parts**2 * among(numbers.of(coarse.cells // group), np.sort(numbers.of(groups))).sum() <= most:
             break
     fine_shop = GridExtraction(whole, Grid(grid.low, grid.cell / parts, grid.blocks * parts))
-    found = Polygons(coarse.places, coarse.triangles, coarse.normals)
+    made = Polygons(coarse.places, coarse.triangles, coarse.normals)
     while 0 < len(groups) <= MOST_GROUPS:
         chosen = np.sort(numbers.of(groups))
         owned = _with_owners(groups)
@@ -95,13 +96,13 @@ def refined(
         curves = border_curves(fine, parts, numbers, chosen, group)
         more = np.concatenate([_unmatched(sides, curves), _winding(fine, curves, grid.cell)])
         if not len(more):
-            found = stitched(whole, coarse, kept, fine, sides, curves)
+            made = stitched(whole, coarse, kept, fine, sides, curves)
             break
         before = len(groups)
         groups = _distinct(np.concatenate([groups, more // group]), numbers)
         if len(groups) == before:
             break
-    return unfolded(whole, found), _left(fine_shop, groups, coarse, doubt, numbers)
+    return unfolded(whole, made), _left(fine_shop, groups, coarse, doubt, numbers)
 
 
 def _left(fine_shop: GridExtraction, groups: Keys, coarse: Level, doubt: Unresolved, numbers: Numbering) -> Unresolved:
@@ -149,10 +150,10 @@ def _to_cut(tape: Tape, coarse: Level, cell: float, tolerance: float | None) -> 
     import numpy as np
 
     count = len(coarse.triangles)
-    too_bent, none = coarse.met[coarse.bent], np.zeros((0, 3), dtype=np.int64)
+    too_bent, none = coarse.places_of(np.flatnonzero(coarse.bent)), np.zeros((0, 3), dtype=np.int64)
     if tolerance is None:
         most = max(4 * count, MOST_BENT)
-        asked = coarse.met[coarse.bent | (coarse.turns > TURN * cell)]
+        asked = coarse.places_of(np.flatnonzero(coarse.bent | (coarse.turns > TURN * cell)))
         return [(asked, FINE, most), (too_bent, FINE, most), (too_bent, COARSER, inf), (none, COARSER, inf)]
     off = _off(tape, coarse, tolerance)
     if (off > tolerance).sum() > FEW * len(off):

@@ -29,17 +29,20 @@ def unlike_corners(places, triangles, normals, rows):
     return count
 
 
-@lean("void(int32[:, ::1], int64[::1], int32[::1], int64[::1])")
-def count_edges(triangles, begin, ends, found):
-    """Numbers of edges into ``found`` (3,): all, those of only one triangle, those of more than two.
+@lean("void(int32[:, ::1], int64[::1], int32[::1], uint8[::1], int64[::1])")
+def count_edges(triangles, begin, ends, met, found):
+    """Numbers into ``found`` (4,): edges, edges of only one triangle, of more than two, and vertices of triangles.
 
-    ``begin`` (vertices + 1,), zeros, and ``ends`` (3 t,) are working memory: an edge is kept at its lower vertex.
+    ``begin`` (vertices + 1,) and ``met`` (vertices,), zeros, and ``ends`` (3 t,) are working memory: an edge is kept at
+    its lower vertex.
     """
     for t in range(triangles.shape[0]):
         for k in range(3):
             begin[min(triangles[t, k], triangles[t, (k + 1) % 3]) + 1] += 1
+            met[triangles[t, k]] = 1
     for v in range(1, begin.shape[0]):
         begin[v] += begin[v - 1]
+        found[3] += met[v - 1]
     # Filled from the front, so that each beginning moves on to the next one.
     for t in range(triangles.shape[0]):
         for k in range(3):
@@ -71,12 +74,18 @@ def count_edges(triangles, begin, ends, found):
             first = n
 
 
-@lean("void(float64[:, ::1], int32[:, ::1], float64[::1], float64[::1])")
-def sum_up(places, triangles, middle, found):
-    """Six times the volume inside, and twice the area, into ``found`` (2,), about a point ``middle`` (3,).
+@lean("void(float64[:, ::1], int32[:, ::1], float64[::1])")
+def sum_up(places, triangles, found):
+    """Six times the volume inside, and twice the area, into ``found`` (2,).
 
-    Partial sums of SUMMED triangles each keep rounding from adding up.
+    About the mean of the vertices; partial sums of SUMMED triangles each keep rounding from adding up.
     """
+    mx, my, mz = 0.0, 0.0, 0.0
+    for v in range(places.shape[0]):
+        mx += places[v, 0]
+        my += places[v, 1]
+        mz += places[v, 2]
+    mx, my, mz = mx / places.shape[0], my / places.shape[0], mz / places.shape[0]
     six_volumes, areas = 0.0, 0.0
     for t in range(triangles.shape[0]):
         if t % SUMMED == 0:
@@ -84,7 +93,7 @@ def sum_up(places, triangles, middle, found):
             found[1] += areas
             six_volumes, areas = 0.0, 0.0
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
-        ax, ay, az = places[a, 0] - middle[0], places[a, 1] - middle[1], places[a, 2] - middle[2]
+        ax, ay, az = places[a, 0] - mx, places[a, 1] - my, places[a, 2] - mz
         x, y, z = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1], places[b, 2] - places[a, 2]
         u, v, w = places[c, 0] - places[a, 0], places[c, 1] - places[a, 1], places[c, 2] - places[a, 2]
         x, y, z = y * w - z * v, z * u - x * w, x * v - y * u

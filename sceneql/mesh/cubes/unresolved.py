@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from sceneql.compiled.kernels import over_tiles
 from sceneql.mesh.bounded import Corner, bounded
 from sceneql.mesh.cubes.grid import BLOCK, grid_around
-from sceneql.mesh.cubes.grid_extraction import BATCH, GridExtraction
+from sceneql.mesh.cubes.grid_extraction import BATCH, GridExtraction, joined
 from sceneql.mesh.cubes.hidden_kernels import DEEPEST, hidden
 
 if TYPE_CHECKING:
@@ -73,19 +73,19 @@ def hidden_in(
 
     count = -(-len(blocks) // BATCH)
     bits = np.full(len(blocks), 255, dtype=np.uint8) if eighths is None else eighths
-    found: list[Any] = [(np.zeros((0, 3), np.int32), np.zeros(0), np.zeros(0, bool))] * (count + 1)
+    found: list[Any] = [None] * count
 
     def work(batch: int) -> None:
         r, mine = shop.room(), blocks[batch * BATCH : (batch + 1) * BATCH]
         most = len(mine) * BLOCK**3
         cells, rest, seen = np.empty((most, 3), dtype=np.int32), np.empty(most), np.empty(most, dtype=bool)
         n = hidden(
-            *shop.program, r.scratch, r.short, r.near, r.registers, r.points, r.values, r.stack,
+            *shop.program, r.scratch, r.short, r.near, r.registers, r.points, r.values, r.nearest, r.stack,
             r.second, shop.grid.numbers, mine,
             bits[batch * BATCH : (batch + 1) * BATCH], deepest, finer, cells, rest, seen,
         )  # fmt: skip
         found[batch] = cells[:n].copy(), rest[:n].copy(), seen[:n].copy()
 
     over_tiles(count, work)
-    where, volumes, seen = (np.concatenate(column) for column in zip(*found, strict=True))
+    where, volumes, seen = joined(found)
     return Unresolved(where, volumes, shop.grid, seen)

@@ -32,7 +32,7 @@ class Force(Family):
     )
 
     components: Annotated[Formula, Symbols(SYMBOLS, dim.FORCE, several=True)] | None = field(
-        "`[fx, fy, fz]`: its components [N].", None
+        "Its components [N]: `components: [0, 5, 0]` is upwards.", None
     )
     potential_: Annotated[Formula, Symbols(("x", "y", "z", "t", "m"), dim.ENERGY)] | None = field(
         "The potential energy of one mass [J].", None

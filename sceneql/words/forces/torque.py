@@ -22,7 +22,7 @@ class Torque(Force):
 
     components: Annotated[
         Formula, Symbols(("x", "y", "z", "vx", "vy", "vz", "t", "m"), dim.FORCE * dim.LENGTH, several=True)
-    ] = field("`[tx, ty, tz]`: its components [N m].")
+    ] = field("Its components [N m]: `components: [0, 3, 0]` is about y.")
 
     def problems(self) -> Iterator[Problem]:
         """Formulas that are no torque."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.kinds import FieldBuilder, Moment
 from sceneql.shapes.blend import largest
@@ -21,6 +22,11 @@ class Difference(Combination):
     it shows the color of the member whose surface is seen: in a hole that of what cut it, or the first member's where
     that has none.
     """
+
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("less", "minus", "without", "subtract", "holes", "hole", "cut", "cutter", "remove", "tool", "tools", "base"),
+        "the first of `of` is what is cut, the others are cut away: write `of: [block, hole]`",
+    )
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """Its field from those of its members."""

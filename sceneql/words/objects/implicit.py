@@ -12,7 +12,6 @@ from pydantic import field_validator
 from sceneql.formulas.balanced import balanced
 from sceneql.formulas.point_formula import in_coordinates, written_out
 from sceneql.kinds import (
-    Axis,
     Clock,
     Doubt,
     FieldBuilder,
@@ -21,6 +20,7 @@ from sceneql.kinds import (
     Formula,
     Moment,
     Problem,
+    Quantity,
     Record,
     Symbols,
 )
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from sceneql import frame
 
 Corner = tuple[float, float, float]
+Place = Annotated[Corner, Quantity(PLAIN, (3,))]
 PLACES = 200
 """Number of points on the default bounds at which a formula is sampled."""
 AXES = tuple(tuple(side * (j == k) for j in range(3)) for k in range(3) for side in (1.0, -1.0))
@@ -58,7 +59,7 @@ class Within(Record):
     )
 
     ball: FixedScalar | None = described("Radius of a ball about the origin.", None, above=0)
-    box: tuple[Axis, Axis] | None = described("Low and high corner of a box.", None)
+    box: tuple[Place, Place] | None = described("Low and high corner of a box.", None)
 
     def problems(self) -> Iterator[Problem]:
         """Two shapes or none, or a box inside out."""
@@ -277,13 +278,12 @@ class Implicit(Solid):
         return value, limit
 
     def _now(self, moment: Moment) -> _Less:
-        """Formula minus the level now; for a constant formula it is made once in a run."""
+        """Formula minus the level now; for a constant formula it is made once."""
 
         def make() -> _Less:
             return _less(written_out(self.field.expr, moment), self.level, *self.bounds.corners)
 
-        constant, key = self.field.constant, (self.level, self.bounds.corners)
-        return moment.kept(f"formula {id(self.field)}", key, make) if constant else make()
+        return self.field.kept((self.level, self.bounds.corners), make) if self.field.constant else make()
 
     def _why_nothing(self, moment: Moment) -> str:
         """Reason why there is nothing to draw at any time; empty if there may be something."""
