@@ -67,11 +67,11 @@ def load(
 
 def errors_of_layout(graph: SimulationGraph) -> list[Diagnostic]:
     """The errors that fields alone do not show: those of islands that `check` lays out (Kind.told_by_layout)."""
-    from sceneql.march.assembled import models_of
-
     found: list[Diagnostic] = []
     for island in graph.islands:
         if any(graph.tasks[name].kind.told_by_layout() for name in island.models):
+            from sceneql.march.assembled import models_of
+
             made = models_of(graph, island, marched=False)
             if not made.found.errors:
                 made.act()

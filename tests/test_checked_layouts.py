@@ -29,7 +29,7 @@ def test_fluid_that_solids_close_off_fails_a_check(tmp_path):
     scene.write_text(f"clock: {{end: 1 s}}\n{bar}models: {{air: {air}}}\n", encoding="utf-8")
     result = CliRunner().invoke(cli, ["check", str(scene)])
     assert result.exit_code == 1
-    assert "'bar' closes this part of it off" in result.output
+    assert "'bar' closes this part of it off" in str(result.exception)
 
 
 def test_many_cells_are_left_to_the_run(tmp_path):
