@@ -19,11 +19,13 @@ from meshes import (
     tape_of,
 )
 from sceneql.field.tape.tape_solid import field_gradients, field_values
+from sceneql.mesh.bounded import bounded
 from sceneql.mesh.cubes.grid import grid_around
 from sceneql.mesh.cubes.polygonise import polygonise
 from sceneql.mesh.cubes.unresolved import unresolved
 from sceneql.mesh.measures import euler_characteristic, volume
 from sceneql.mesh.repair import move_vertices
+from sceneql.mesh.repair.folds import overturned
 
 
 def test_resolved_shapes_hide_next_to_nothing():
@@ -83,6 +85,13 @@ def test_no_triangle_faces_inward_where_fine_cells_meet_coarse_ones(cells):
     inward = (np.cross(b - a, c - a) * field_gradients(tape_of(TANGLECUBE), (a + b + c) / 3)).sum(axis=1) < 0
     assert inward.sum() == 0
     assert euler_characteristic(found.triangles) == -8
+
+
+def test_a_sliver_between_fine_and_coarse_cells_is_not_flipped_into_a_larger_fold():
+    planes = "(1-z-sqrt(2)*x)*(1-z+sqrt(2)*x)*(1+z+sqrt(2)*y)*(1+z-sqrt(2)*y)"
+    kummer = f"max((x^2+y^2+z^2-1.3)^2 - 2.9/1.7*{planes}, sqrt(x^2+y^2+z^2) - 2.5)"
+    found, _ = cut_finer(kummer, 2.55, 44)
+    assert not len(overturned(bounded(tape_of(kummer), (-2.55,) * 3, (2.55,) * 3), found))
 
 
 def test_no_corner_is_tried_again_before_something_near_it_has_moved(monkeypatch):

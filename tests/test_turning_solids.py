@@ -5,7 +5,7 @@ import pytest
 
 from flows import Air
 from sceneql.flows.schemes.multistep import operators_of
-from sceneql.flows.schemes.multistep_kernels import EXACT
+from sceneql.flows.schemes.operators_kernels import EXACT
 from sceneql.quantities.diagnostic import ScriptError
 
 INNER, OUTER, SPEEDS = 0.35, 0.8, (1.0, -0.5)

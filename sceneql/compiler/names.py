@@ -21,6 +21,7 @@ from sceneql.quantities.literal import WORD
 from sceneql.quantities.operations import CONSTANTS
 from sceneql.quantities.other_words import OURS
 from sceneql.quantities.parser import parse_value
+from sceneql.quantities.spaced import declared
 from sceneql.quantities.span import Span
 from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import continues_unit, in_words, unit_hint
@@ -300,6 +301,8 @@ class Names:
             giving = next(iter(self._giving(wanted)), None)
             if hint is None and giving is not None:
                 hint = f"a value is named with its part: write `{giving}.{wanted}`"
+            if hint is None and len(parts) == 1:
+                hint = declared(span.source.text, wanted)
             if hint is None and len(parts) == 1:
                 hint = f"names stand under `define`, `define: {{{wanted}: 1 m}}`: `sceneql words define`"
         return Diagnostic("unknown-name", message, span, hint)

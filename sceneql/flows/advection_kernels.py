@@ -26,6 +26,7 @@ from sceneql.flows.layout import (
     INVERSES,
     LANES,
     PERIODIC,
+    PLAIN,
     PUSHED,
     PUSHES,
     SCHEME,
@@ -50,19 +51,20 @@ def sides(component, ints):
 
 
 @lean_inlined
-def mean(first, second, out, has_first, has_second, count):
-    """Half the sum of two rows, of which one may be missing."""
-    a, b = (0.5 if has_first else 0.0), (0.5 if has_second else 0.0)
+def mean(first, second, area, out, has_first, has_second, count):
+    """Area times half the sum of two rows, of which one may be missing."""
+    a, b = (0.5 * area if has_first else 0.0), (0.5 * area if has_second else 0.0)
     for i in range(count):
         out[i] = a * first[i] + b * second[i]
 
 
 @lean_inlined
-def passing(through, component, axis, place, j, k, out, ints):
+def passing(through, area, component, axis, place, j, k, out, ints):
     """What flows along an axis between the own cells of a row of a component's faces and those before them, ``place``
     being their number along it: the mean of the flows through the faces of both cells; of one, on the boundary.
 
-    ``through``: by face [m^3/s]. Along x of all places (the first two arguments of place are not read), else of one.
+    ``through``: by face, which times ``area`` is [m^3/s]. Along x of all places (the first two arguments of place are
+    not read), else of one.
     """
     nx, ny, _ = sides(axis, ints)
     own_nx, own_ny, _ = sides(component, ints)
@@ -72,7 +74,7 @@ def passing(through, component, axis, place, j, k, out, ints):
         count = ints[CELLS + axis]
         row = start + own_nx * ((0 if axis == 1 else j) + own_ny * (0 if axis == 2 else k))
         before = place - 1 if place > 0 else count - 1
-        mean(through[row + before * stride :], through[row + place * stride :], out, True, True, own_nx)
+        mean(through[row + before * stride :], through[row + place * stride :], area, out, True, True, own_nx)
         return
     if axis == 1:
         row = start + nx * (place + ny * k)
@@ -81,13 +83,13 @@ def passing(through, component, axis, place, j, k, out, ints):
     else:
         row = start + nx * (j + ny * k)
     if component == 0:
-        last = ints[CELLS]
+        last, half = ints[CELLS], 0.5 * area
         for i in range(1, last):
-            out[i] = 0.5 * (through[row + i] + through[row + i - 1])
+            out[i] = half * through[row + i] + half * through[row + i - 1]
         if ints[PERIODIC] == 1:
-            out[0] = 0.5 * (through[row] + through[row + last - 1])
+            out[0] = half * through[row] + half * through[row + last - 1]
         else:
-            out[0], out[last] = 0.5 * through[row], 0.5 * through[row + last - 1]
+            out[0], out[last] = half * through[row], half * through[row + last - 1]
         return
     here, count = (j if component == 1 else k), ints[CELLS + component]
     stride = nx if component == 1 else nx * ny
@@ -96,7 +98,7 @@ def passing(through, component, axis, place, j, k, out, ints):
     has_behind, has_here = here > 0 or around, here < count
     first = through[behind:] if has_behind else through[row:]
     second = through[row:] if has_here else first
-    mean(first, second, out, has_behind, has_here, own_nx if axis != 0 else nx)
+    mean(first, second, area, out, has_behind, has_here, own_nx if axis != 0 else nx)
 
 
 @lean_inlined
@@ -128,7 +130,7 @@ def beyond(value, weight, own):
 
 
 @lean_inlined
-def along_row(u, through, component, j, k, room, floats, ints):
+def along_row(u, through, area, component, j, k, room, floats, ints):
     """Momentum that crosses the ends of the own cells of a row along x: flux[i] and flux[i + 1] those of face i."""
     nx, ny, _ = sides(component, ints)
     row = ints[STARTS + component] + nx * (j + ny * k)
@@ -139,10 +141,10 @@ def along_row(u, through, component, j, k, room, floats, ints):
     low, high, edges = ints[EDGE_FIRST + 6 * component], ints[EDGE_FIRST + 6 * component + 1], j + ny * k
     values, weights = floats[ints[EDGE_VALUES] :], floats[ints[EDGE_WEIGHTS] :]
     if component == 0:
-        mean(through[row:], through[row + 1 :], flows[1:], True, True, nx - 1)
-        flows[0] = 0.5 * (through[row] + through[row + nx - 1])
+        mean(through[row:], through[row + 1 :], area, flows[1:], True, True, nx - 1)
+        flows[0] = 0.5 * area * through[row] + 0.5 * area * through[row + nx - 1]
     else:
-        passing(through, component, 0, 0, j, k, flows, ints)
+        passing(through, area, component, 0, 0, j, k, flows, ints)
     if ints[PERIODIC] == 1:
         padded[0], padded[1], padded[nx + 2] = u[row + nx - 2], u[row + nx - 1], u[row]
         padded[nx + 3] = u[row + 1]
@@ -155,14 +157,15 @@ def along_row(u, through, component, j, k, room, floats, ints):
         padded[nx + 2] = beyond(values[high + edges], weights[high + edges], u[row + nx - 1])
     carried(ints[SCHEME], flows[1:], padded[1:], padded[2:], padded[3:], padded[4:], flux[1:], nx - 1)
     if component == 0:
-        flux[0], flux[nx] = min(through[row], 0.0) * u[row], max(through[row + nx - 1], 0.0) * u[row + nx - 1]
+        out, last = area * through[row], area * through[row + nx - 1]
+        flux[0], flux[nx] = min(out, 0.0) * u[row], max(last, 0.0) * u[row + nx - 1]
     else:
         flux[0] = flows[0] * (values[low + edges] if flows[0] > 0.0 else u[row])
         flux[nx] = flows[nx] * (values[high + edges] if flows[nx] < 0.0 else u[row + nx - 1])
 
 
 @lean_inlined
-def across_row(u, through, component, axis, place, j, k, flux, room, floats, ints):
+def across_row(u, through, area, component, axis, place, j, k, flux, room, floats, ints):
     """Momentum that crosses the low sides along y or z of the own cells of a row, whose number along it is ``place``:
     from 0 to the number of faces, which stands for the high sides of the last."""
     nx, ny, nz = sides(component, ints)
@@ -174,19 +177,19 @@ def across_row(u, through, component, axis, place, j, k, flux, room, floats, int
         row = base + (count - 1 if high else 0) * stride
         if component == axis:
             for i in range(nx):
-                out = through[row + i]
+                out = area * through[row + i]
                 flux[i] = (max(out, 0.0) if high else min(out, 0.0)) * u[row + i]
             return
         first = ints[EDGE_FIRST + 6 * component + 2 * axis + high] + nx * (k if axis == 1 else j)
         given = floats[ints[EDGE_VALUES] + first :]
-        passing(through, component, axis, place, j, k, flows, ints)
+        passing(through, area, component, axis, place, j, k, flows, ints)
         for i in range(nx):
             inward = flows[i] < 0.0 if high else flows[i] > 0.0
             flux[i] = flows[i] * (given[i] if inward else u[row + i])
         return
     if high:
         place = 0
-    passing(through, component, axis, place, j, k, flows, ints)
+    passing(through, area, component, axis, place, j, k, flows, ints)
     before = place - 1 if place > 0 else count - 1
     c, b = u[base + place * stride :], u[base + before * stride :]
     a, d = b, c
@@ -214,36 +217,55 @@ def across_row(u, through, component, axis, place, j, k, flux, room, floats, int
     carried(ints[SCHEME], flows, a, b, c, d, flux, nx)
 
 
+@lean_inlined
+def add_left(own, inverse, into, out, plain, count):
+    """Add what stays of momentum in the own cells of a row; ``plain``: but for the ends they are of one volume."""
+    if plain:
+        whole = inverse[1]
+        for i in range(1, count - 1):
+            own[i] += (into[i] - out[i]) * whole
+        for i in range(0, count, count - 1):
+            own[i] += (into[i] - out[i]) * inverse[i]
+    else:
+        for i in range(count):
+            own[i] += (into[i] - out[i]) * inverse[i]
+
+
 @lean(TERM, inner=True)
 def advect(t, y, rate, floats, ints):
     """V du/dt = momentum in minus momentum out; row by row, each of whose sides is computed once."""
     faces = ints[FACES]
     u, more = y[ints[AT] : ints[AT] + faces], rate[ints[AT] : ints[AT] + faces]
     areas, inverses = floats[ints[AREAS] : ints[AREAS] + faces], floats[ints[INVERSES] : ints[INVERSES] + faces]
-    room = floats[ints[WORK] :]
-    through = room[:faces]
-    for f in range(faces):
-        through[f] = areas[f] * u[f]
-    for component in range(ints[AXES]):
-        nx, ny, nz = sides(component, ints)
-        wide = nx + 8
-        rows, flux = room[faces : faces + 5 * wide], room[faces + 5 * wide : faces + 6 * wide]
-        kept = room[faces + 6 * wide :]
-        for k in range(nz):
-            for j in range(ny):
+    room, plain, wide = floats[ints[WORK] :], ints[PLAIN] == 1, ints[CELLS] + 9
+    through, rows, flux = room[:faces], room[faces : faces + 5 * wide], room[faces + 5 * wide : faces + 6 * wide]
+    if plain:
+        through = u
+    else:
+        for f in range(faces):
+            through[f] = areas[f] * u[f]
+    layers = wide + (ints[CELLS] + 1) * (ints[CELLS + 1] + 1)
+    for k in range(ints[CELLS + 2] + 1):
+        for j in range(ints[CELLS + 1] + 1):
+            for component in range(ints[AXES]):  # side by side, since each reads the others' velocities
+                nx, ny, nz = sides(component, ints)
+                if j >= ny or k >= nz:
+                    continue
+                kept = room[faces + 6 * wide + component * layers :]
                 row = ints[STARTS + component] + nx * (j + ny * k)
                 own, inverse = more[row : row + nx], inverses[row : row + nx]
-                along_row(u, through, component, j, k, rows, floats, ints)
-                for i in range(nx):
-                    own[i] += (rows[i] - rows[i + 1]) * inverse[i]
+                along_row(u, through, areas[0] if plain else 1.0, component, j, k, rows, floats, ints)
+                inner = component == 0 or ints[PERIODIC + component] == 1
+                alike = plain and nx > 2 and (inner or 0 < (j if component == 1 else k) < ints[CELLS + component])
+                add_left(own, inverse, rows, rows[1:], alike, nx)
                 for axis in range(1, ints[AXES]):
+                    area = areas[ints[STARTS + axis]] if plain else 1.0
                     place, slot = (j, 0) if axis == 1 else (k, wide + nx * j)
                     low = kept[slot : slot + nx]
                     if place == 0:
-                        across_row(u, through, component, axis, 0, j, k, low, rows, floats, ints)
-                    across_row(u, through, component, axis, place + 1, j, k, flux, rows, floats, ints)
-                    for i in range(nx):
-                        own[i] += (low[i] - flux[i]) * inverse[i]
+                        across_row(u, through, area, component, axis, 0, j, k, low, rows, floats, ints)
+                    across_row(u, through, area, component, axis, place + 1, j, k, flux, rows, floats, ints)
+                    add_left(own, inverse, low, flux, alike, nx)
                     for i in range(nx):
                         low[i] = flux[i]
 

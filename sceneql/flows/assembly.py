@@ -128,6 +128,7 @@ class _Builder:
         ints[layout.SEEPING] = -1 if passage.seeping is None else assembly.floats(passage.seeping)
         ints[layout.AREAS], ints[layout.INVERSES] = assembly.floats(areas), assembly.floats(inverses)
         ints[layout.SCALES] = assembly.floats(areas * inverses)
+        ints[layout.PLAIN] = self.moving is None and self.solids is None and self.fluids is None
         ints[layout.MOVES] = self._moving(at)
         ints[layout.PUSHES], base, strengths = self._push(pushes, passage.fills)
         ints[layout.PUSHED] = self.moving is not None or base >= 0 or bool(pushes.any())

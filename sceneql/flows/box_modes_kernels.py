@@ -223,14 +223,12 @@ def along(x, count, stride, rows, step, groups, outer, forward, tables, scratch,
 
 
 @lean(types.void(A, N, N, N, A, A, I, A, A, A, A, F, F), inner=True)
-def through_modes(x, nx, ny, nz, tables, scratch, plans, spectrum, along_x, along_y, along_z, a, size):
-    """Multiply the eigenmodes of x by ``spectrum`` (cells,), in place; where that is empty, divide them by ``size``
-    times 1 + a times the sum of their decay rates along the axes.
+def through_modes_of_rows(x, nx, ny, nz, tables, scratch, plans, spectrum, along_x, along_y, along_z, a, size):
+    """`through_modes` of x, whose rows along x are transformed already and stay so.
 
     Along the last axis a row goes there and back while it is in the cache.
     """
     widest()
-    along(x, nx, 1, ny * nz, nx, 1, 0, True, tables, scratch, plans[:PLAN])
     deep = nz > 1
     if deep:
         along(x, ny, nx, nx, 1, nz, nx * ny, True, tables, scratch, plans[PLAN : 2 * PLAN])
@@ -266,6 +264,14 @@ def through_modes(x, nx, ny, nz, tables, scratch, plans, spectrum, along_x, alon
             take_back(raw, here, count, rows, 1, lanes)
     if deep:
         along(x, ny, nx, nx, 1, nz, nx * ny, False, tables, scratch, plans[PLAN : 2 * PLAN])
+
+
+@lean(types.void(A, N, N, N, A, A, I, A, A, A, A, F, F), inner=True)
+def through_modes(x, nx, ny, nz, tables, scratch, plans, spectrum, along_x, along_y, along_z, a, size):
+    """Multiply the eigenmodes of x by ``spectrum`` (cells,), in place; where that is empty, divide them by ``size``
+    times 1 + a times the sum of their decay rates along the axes."""
+    along(x, nx, 1, ny * nz, nx, 1, 0, True, tables, scratch, plans[:PLAN])
+    through_modes_of_rows(x, nx, ny, nz, tables, scratch, plans, spectrum, along_x, along_y, along_z, a, size)
     along(x, nx, 1, ny * nz, nx, 1, 0, False, tables, scratch, plans[:PLAN])
 
 

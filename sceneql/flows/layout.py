@@ -47,7 +47,10 @@ UNCUT = 46
 """Along x, y, z: the conductance of a face of the box in the pressure's equation."""
 PUSHED, GIVEN = 47, 48
 """1 where something pushes, and where the velocities of some faces are given."""
-PLANS, PLAN = 49, 24
+PLAIN = 49
+"""1 where the open areas of a component's faces are all the same at all times, and, but on the boundary, their
+volumes."""
+PLANS, PLAN = 50, 24
 """Of each axis PLAN integers."""
 KIND, LENGTH, TWIDDLES, TWISTS, FACTORS = 0, 1, 2, 3, 4
 """Of a plan: the modes; length of the Fourier transform; cosines and sines of 2 pi k/length, then of pi k/(2 length);

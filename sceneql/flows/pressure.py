@@ -75,7 +75,8 @@ def write_pressure(
     if solver == "fast_transform" and not uniform:
         text = "a fast transform needs a box each side of which is a way out as a whole or not at all"
         raise ScriptError([Diagnostic("invalid", text, assembly.line(), "take `pressure: auto`")])
-    rows = (cells.shape[0] + 9) * 8 + (cells.shape[0] + 1) * (cells.shape[1] + 1)
+    wide, layer = cells.shape[0] + 9, (cells.shape[0] + 1) * (cells.shape[1] + 1)
+    rows = 6 * wide + faces.axes * (wide + layer)
     room = max(room, faces.count + rows)
     ints[layout.WORK] = assembly.floats(np.zeros(room + (0 if uniform else 5 * n))) + (0 if uniform else 5 * n)
     if solver in ("auto", "fast_transform"):

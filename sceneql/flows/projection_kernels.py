@@ -10,7 +10,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.flows.box_modes_kernels import through_modes
+from sceneql.flows.box_modes_kernels import along, through_modes, through_modes_of_rows
 from sceneql.flows.layout import (
     AREAS,
     AT,
@@ -25,6 +25,8 @@ from sceneql.flows.layout import (
     LED,
     MOVES,
     PERIODIC,
+    PLAIN,
+    PLAN,
     PLANS,
     PRESSURE,
     RATE,
@@ -59,6 +61,22 @@ def by_transform(x, floats, ints):
     nx, ny, nz = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2]
     spectrum, none = floats[ints[SPECTRUM] : ints[SPECTRUM] + nx * ny * nz], floats[:0]
     through_modes(x, nx, ny, nz, floats, floats[ints[WORK] :], ints[PLANS:], spectrum, none, none, none, 0.0, 0.0)
+
+
+@lean_inlined
+def rows_of_box(x, first, count, forward, floats, ints):
+    """Transform rows of cells along x, forward or back, which is the beginning and the end of `by_transform`."""
+    nx = ints[CELLS]
+    along(x[first * nx :], nx, 1, count, nx, 1, 0, forward, floats, floats[ints[WORK] :], ints[PLANS : PLANS + PLAN])
+
+
+@lean(types.void(A, A, I), inner=True)
+def by_transform_of_rows(x, floats, ints):
+    """What stands between."""
+    nx, ny, nz = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2]
+    spectrum, none = floats[ints[SPECTRUM] : ints[SPECTRUM] + nx * ny * nz], floats[:0]
+    scratch, plans = floats[ints[WORK] :], ints[PLANS:]
+    through_modes_of_rows(x, nx, ny, nz, floats, scratch, plans, spectrum, none, none, none, 0.0, 0.0)
 
 
 @lean_inlined
@@ -178,6 +196,33 @@ def first_face(axis, j, k, ints):
     return ints[STARTS + axis] + nx * (j + ny * k), -place * stride if around else stride
 
 
+@lean_inlined
+def net(v, w, a, b, own, plain, more, count):
+    """Flow out on the high side of a row's cells less that in on the low side: to what there is, or alone."""
+    if plain:
+        area = a[0]
+        for i in range(count):
+            own[i] = (own[i] if more else 0.0) + (area * w[i] - area * v[i])
+    else:
+        for i in range(count):
+            own[i] = (own[i] if more else 0.0) + (b[i] * w[i] - a[i] * v[i])
+
+
+@lean_inlined
+def outflow_row(u, areas, own, j, k, ints):
+    """What velocities u take out of each cell of row (j, k)."""
+    nx, around, plain = ints[CELLS], ints[PERIODIC] == 1, ints[PLAIN] == 1
+    low, _ = first_face(0, j, k, ints)
+    v, w, a, b = u[low:], u[low + 1 :], areas[low:], areas[low + 1 :]
+    net(v, w, areas if plain else a, b, own, plain, False, nx - 1 if around else nx)
+    if around:
+        own[nx - 1] = a[0] * v[0] - a[nx - 1] * v[nx - 1]
+    for axis in range(1, ints[AXES]):
+        low, up = first_face(axis, j, k, ints)
+        a, b = (areas[ints[STARTS + axis] :] if plain else areas[low:]), areas[low + up :]
+        net(u[low:], u[low + up :], a, b, own, plain, True, nx)
+
+
 @lean(types.void(A, A, N, A, I))
 def outflow(x, out, what, floats, ints):
     """Net outflow of each cell (cells,) of velocities x, at ints[AT] and on [m^3/s], less what walls that move push
@@ -187,21 +232,9 @@ def outflow(x, out, what, floats, ints):
     """
     nx, ny, nz, faces = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2], ints[FACES]
     u, areas = x[ints[AT] : ints[AT] + faces], floats[ints[AREAS] : ints[AREAS] + faces]
-    around = ints[PERIODIC] == 1
     for k in range(nz):
         for j in range(ny):
-            own = out[nx * (j + ny * k) :]
-            low, _ = first_face(0, j, k, ints)
-            v, w, a, b = u[low:], u[low + 1 :], areas[low:], areas[low + 1 :]
-            for i in range(nx - 1 if around else nx):
-                own[i] = b[i] * w[i] - a[i] * v[i]
-            if around:
-                own[nx - 1] = a[0] * v[0] - a[nx - 1] * v[nx - 1]
-            for axis in range(1, ints[AXES]):
-                low, up = first_face(axis, j, k, ints)
-                v, w, a, b = u[low:], u[low + up :], areas[low:], areas[low + up :]
-                for i in range(nx):
-                    own[i] += b[i] * w[i] - a[i] * v[i]
+            outflow_row(u, areas, out[nx * (j + ny * k) :], j, k, ints)
     pushed = pushed_at(what, ints)
     if pushed >= 0:
         for c in range(nx * ny * nz):
@@ -209,9 +242,16 @@ def outflow(x, out, what, floats, ints):
 
 
 @lean_inlined
-def lessen(u, scales, factor, here, before, has_here, has_before, count):
-    """A row of velocities, less the gradient between two rows of pressures, one of which may be missing: 0."""
-    if has_here and has_before:
+def lessen(u, scales, factor, here, before, has_here, has_before, plain, count):
+    """A row of velocities, less the gradient between two rows of pressures, one of which may be missing: 0.
+
+    ``plain``: all scales of the row are the same.
+    """
+    if plain:
+        scale = factor * scales[0]
+        for i in range(count):
+            u[i] -= scale * (here[i] - before[i])
+    elif has_here and has_before:
         for i in range(count):
             u[i] -= factor * scales[i] * (here[i] - before[i])
     else:
@@ -220,30 +260,37 @@ def lessen(u, scales, factor, here, before, has_here, has_before, count):
             u[i] -= sign * scales[i] * one[i]
 
 
+@lean_inlined
+def lessen_row(u, scales, q, factor, j, k, ints):
+    """`less_gradient` at the faces on the low sides of the cells of row (j, k), and at the high ends of the box."""
+    nx, ny, plain = ints[CELLS], ints[CELLS + 1], ints[PLAIN] == 1
+    around, row = ints[PERIODIC] == 1, nx * (j + ny * k)
+    low, _ = first_face(0, j, k, ints)
+    lessen(u[low + 1 :], scales[low + 1 :], factor, q[row + 1 :], q[row:], True, True, plain, nx - 1)
+    lessen(u[low:], scales[low:], factor, q[row:], q[row + nx - 1 :], True, around, False, 1)
+    if not around:
+        lessen(u[low + nx :], scales[low + nx :], factor, q, q[row + nx - 1 :], False, True, False, 1)
+    for axis in range(1, ints[AXES]):
+        low, up = first_face(axis, j, k, ints)
+        place, count = (j if axis == 1 else k), ints[CELLS + axis]
+        stride, periodic = (nx if axis == 1 else nx * ny), ints[PERIODIC + axis] == 1
+        before = q[row + (count - 1) * stride :] if place == 0 else q[row - stride :]
+        if place == 0 and not periodic:
+            before = q[row:]
+        inner = place > 0 or periodic
+        lessen(u[low:], scales[low:], factor, q[row:], before, True, inner, plain and inner, nx)
+        if place == count - 1 and not periodic:
+            lessen(u[low + up :], scales[low + up :], factor, q, q[row:], False, True, False, nx)
+
+
 @lean(types.void(A, A, F, A, I), inner=True)
 def less_gradient(x, q, factor, floats, ints):
     """x minus factor times the gradient of q, which is 0 beyond open sides, at the faces whose velocity is free."""
-    nx, ny, nz, faces = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2], ints[FACES]
+    faces = ints[FACES]
     u, scales = x[ints[AT] : ints[AT] + faces], floats[ints[SCALES] : ints[SCALES] + faces]
-    around = ints[PERIODIC] == 1
-    for k in range(nz):
-        for j in range(ny):
-            row = nx * (j + ny * k)
-            low, _ = first_face(0, j, k, ints)
-            lessen(u[low + 1 :], scales[low + 1 :], factor, q[row + 1 :], q[row:], True, True, nx - 1)
-            lessen(u[low:], scales[low:], factor, q[row:], q[row + nx - 1 :], True, around, 1)
-            if not around:
-                lessen(u[low + nx :], scales[low + nx :], factor, q, q[row + nx - 1 :], False, True, 1)
-            for axis in range(1, ints[AXES]):
-                low, up = first_face(axis, j, k, ints)
-                place, count = (j if axis == 1 else k), ints[CELLS + axis]
-                stride, periodic = (nx if axis == 1 else nx * ny), ints[PERIODIC + axis] == 1
-                before = q[row + (count - 1) * stride :] if place == 0 else q[row - stride :]
-                if place == 0 and not periodic:
-                    before = q[row:]
-                lessen(u[low:], scales[low:], factor, q[row:], before, True, place > 0 or periodic, nx)
-                if place == count - 1 and not periodic:
-                    lessen(u[low + up :], scales[low + up :], factor, q, q[row:], False, True, nx)
+    for k in range(ints[CELLS + 2]):
+        for j in range(ints[CELLS + 1]):
+            lessen_row(u, scales, q, factor, j, k, ints)
 
 
 @lean(types.boolean(A, N, A, I), inner=True)

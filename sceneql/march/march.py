@@ -24,6 +24,7 @@ from sceneql.march.pace import Pace
 from sceneql.march.statistics import Statistics
 from sceneql.march.switching import Switch
 from sceneql.march.within_contact import WithinContact
+from sceneql.system.stepping import UNREAD
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -209,7 +210,8 @@ class March:
         """As `advance`, without copies: valid until the next call; at the end of a step with the step's own rate."""
         t = min(t, self.end)
         y, at_the_end = self._reach(t)
-        return y, self._rate1 if at_the_end else self.rate(t, y)
+        known = at_the_end and self._counts[kernels.LAST_STAGE] != UNREAD
+        return y, self._rate1 if known else self.rate(t, y)
 
     def memory(self, name: str, assembly: IslandAssembly, t: float, y: Floats) -> tuple[Floats, tuple[int, ...]]:
         """A contact's memory at the instant reached: the island's floats, and the integers with offsets into them."""

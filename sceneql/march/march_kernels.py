@@ -15,6 +15,7 @@ import sceneql.system.channels as channels
 from sceneql.compiled import pointers_kernels as pointers
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, DENSE, FREE_MOTION, GAP, IMPACT, TIED_DRIFT, A, F, I
+from sceneql.system.stepping import UNREAD
 
 T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, LEAST, CLOCKS = range(9)
 """Ends of the last step [s]; the step to try next, or the fixed one [s]; the last error; largest step [s]; largest |y|;
@@ -310,6 +311,8 @@ def march(
             return status
         if counts[LAST_STAGE] >= 0:
             copy(work[counts[LAST_STAGE] * n :], rate1)
+        elif counts[LAST_STAGE] == UNREAD:
+            pass
         elif (alone and not later) or leaving.size > 0 or (counts[HELD] > 0 and counts[ORDER] > 1):
             # (Resting contacts of a first-order method may use the load at the step's start.)
             rate(t1, y1, rate1, floats, ints)

@@ -225,6 +225,18 @@ OF_NAMED = (
     ),
     (
         "objects",
+        "heightfield height_field heightmap terrain landscape elevation_grid elevationgrid",
+        "a height above x and z is a formula: write `{implicit: {field: y - 0.3*sin(x)*cos(z), bounds: {box: [-3 -1 -3,"
+        " 3 1 3]}}}`",
+    ),
+    (
+        "objects",
+        "points point_cloud pointcloud dots scatter markers",
+        "soft dots stand at points: write `{sprites: {at: <points|[0 0 0 m, 1 0 0 m]>}}`; a solid of balls that melt"
+        " together is a `blobby`",
+    ),
+    (
+        "objects",
         "cone pyramid frustum",
         "a cone is a cylinder that is tapered, `{taper: {of: {cylinder: {radius: <radius|0.5 m>, height: <height|2 m>,"
         " position: <position|0 1 0 m>}}, factor: 0.1}}`",
@@ -276,7 +288,7 @@ OF_NAMED = (
     ),
     (
         "models",
-        "dust sparks sparkles snow rain fireworks",
+        "popnet pop emitter particle_system particlesystem particle_emitter dust sparks sparkles snow rain fireworks",
         "write `{particles: {emit: {rate: <rate|100 /s>, velocity: <velocity|0 3 0 m/s>, lifetime: <lifetime|2 s>}}}`",
     ),
     (

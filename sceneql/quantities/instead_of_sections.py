@@ -57,6 +57,12 @@ OF_SECTIONS = (
         "colliders collider collides_with collision collisions",
         "what it touches is a contact: write `contacts: [collision]`, which is with all solids",
     ),
+    (
+        "place.flow",
+        "density",
+        "a flow has one density; of warm or salty fluid that it carries some is lighter by its `buoyancy`: `buoyancy:"
+        " {by: heat.temperature, expansion: 3.4e-3 1/K, reference: 300 K}`",
+    ),
     ("field.gear", "ratio gear_ratio transmission", "its teeth say it: a ratio of 2 is `teeth: 40 20`"),
     (
         "field.streamlines",
@@ -259,7 +265,7 @@ OF_SECTIONS = (
     ("section", "seed", "write `clock: {seed: 5}`"),
     (
         "section",
-        "setup draw update loop main start animate init render_loop",
+        "requestanimationframe game_loop gameloop setup draw update loop main start animate init render_loop",
         "a script says what there is and how it moves, not what is done in each frame: values may be formulas of"
         " `time`, models move objects; `sceneql words sections` shows a whole script",
     ),
@@ -269,11 +275,16 @@ OF_SECTIONS = (
         "functions are there without it, `sceneql words functions`; `include: more.yaml` takes in a script",
     ),
     ("section", "for while foreach", REPEAT),
+    (
+        "section",
+        "print printf console.log echo disp puts",
+        "text stands in a caption, `overlays: {title: {caption: {text: hello}}}`: `sceneql words caption`",
+    ),
     ("section", "layout", "write `outputs: {film: {video: {layout: [{each: variant}]}}}`: `sceneql words layout`"),
     ("section", "if switch", f"there is no `if` around parts; in a value {IF}"),
     (
         "section",
-        "def class fn",
+        "def class fn function",
         "a piece with fields of its own is a template: `sceneql words templates`",
     ),
     (
@@ -312,7 +323,7 @@ OF_SECTIONS = (
     ("section", "camera", "write `cameras: {main: {perspective: {position: 0 2 5 m, look_at: 0 1 0 m}}}`"),
     (
         "section",
-        "joints hinges constraints constraint",
+        "joint hinge joints hinges constraints constraint",
         "write `ties: {name: {hinge: {between: [model.a, model.b], at: 0 0 0 m}}}`: `sceneql words hinge`",
     ),
     (
@@ -322,6 +333,7 @@ OF_SECTIONS = (
         " `sceneql words keys`",
     ),
     ("section", "gravity", "write `forces: [gravity]`, or `forces: [{gravity: {strength: 9.81 m/s^2}}]`"),
+    ("section", "addforce add_force push thrust", "write `forces: [gravity, {force: {components: [0, 5, 0]}}]`, in N"),
     ("section", "collision contact", "write `forces: [gravity, collision]`"),
     ("section", "duration end length stop time", "write `clock: {end: 5 s}`: `sceneql words clock`"),
     ("section", "fps framerate frame_rate", "write `clock: {fps: 30}`: `sceneql words clock`"),

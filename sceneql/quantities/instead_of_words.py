@@ -227,6 +227,11 @@ OF_PARTS = (
         "restitution bounce bounciness bouncy elasticity",
         "a contact has it, `contacts: {touch: {collision: {restitution: 0.8}}}`",
     ),
+    (
+        "field.objects",
+        "finish phong reflection specularity ambient",
+        "a material says it, `material: {glossy: {roughness: 0.2}}`, or `mirror`, `metal`: `sceneql words glossy`",
+    ),
     ("field", "friction", "a contact has it, `contacts: {touch: {collision: {friction: 0.3}}}`"),
     ("field.objects", "count copies number amount instances", REPEAT),
     (

@@ -13,6 +13,11 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 
+UNREAD = -2
+"""`Method.last_stage` where the rate at a step's end is nowhere, and no one asks for it: neither dense output nor what
+acts between steps."""
+
+
 @dataclass(frozen=True, slots=True)
 class Prepared:
     """The arrays that a step works with on one island."""
@@ -53,7 +58,8 @@ class Method:
     work: int = 1
     """Scratch that the step needs, in arrays of the size of y."""
     last_stage: int = -1
-    """Index of the array of ``work`` that holds the rate at the step's end (first same as last); -1: none does."""
+    """Index of the array of ``work`` that holds the rate at the step's end (first same as last); -1: none does; or
+    UNREAD."""
     extend: str | None = None
     """Function of the step's signature that adds the further stages of dense output to `work`; called once before a
     frame is read off a step. Where contacts are exact, it is not: `dense` is read after every step, and contacts change

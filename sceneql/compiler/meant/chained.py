@@ -154,6 +154,8 @@ def _one_for_all(node: Node, info: Any, name: str, title: str) -> str | None:
     marks = [mark for mark in quantities(info) if mark.shape == () and mark.dimension is not None]
     if not marks or not isinstance(node, Scalar) or not re.search(r"(?<![\w.])[xyz](?![\w.(])", node.text):
         return None
+    if (other := instead(f"place.{title}", name)) is not None:
+        return other
     more = f"; `sceneql words {title}` tells what goes by place" if title.isidentifier() else ""
     return f"it is one value, the same at all places, as `{name}: {format_quantity(1.0, marks[0].dimension)}`{more}"
 

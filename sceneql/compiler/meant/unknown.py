@@ -15,6 +15,7 @@ from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.meant.own_values import with_own
 from sceneql.compiler.meant.together import filled, together
+from sceneql.compiler.meant.unwrapped import unwrapped
 from sceneql.compiler.names import Vocabulary
 from sceneql.compiler.vector_fields import ENDS
 from sceneql.kinds import written_name
@@ -123,7 +124,10 @@ def _ends(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[s
 
 
 def _flat(name: str, value: Node, known: Collection[str]) -> str | None:
-    """The help for a group of fields that stand among the others here."""
+    """The help for a group of fields that stand among the others here, or a group in it."""
+    inner = next(iter(value.entries.values())) if isinstance(value, Mapping) and len(value.entries) == 1 else None
+    if isinstance(inner, Mapping) and not {*value.entries} & {*known}:  # type: ignore[union-attr]
+        return _flat(name, inner, known)
     if not isinstance(value, Mapping) or not value.entries or not all(inner in known for inner in value.entries):
         return None
     told = ", ".join(f"{inner}: {node.span.text}" for inner, node in value.entries.items())
@@ -187,6 +191,10 @@ def word_meant(
     if (replaced := _field_of_replaced(entry, family, script, catalogue)) is not None:
         return replaced
     words, fields = catalogue.choices(family), entry.fields
+    if (plain := unwrapped(fields, family, catalogue)) is not None:
+        return f"the word says the shape, and its fields stand in it: write `{plain}`"
+    if family == "materials" and isinstance(fields, Mapping) and (looks := _told(fields, words, family, catalogue)):
+        return looks
     inner = next(iter(fields.entries)) if isinstance(fields, Mapping) and len(fields.entries) == 1 else ""
     if fields is not None and entry.name == entry.word and catalogue.load(family, inner) is not None:
         return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.span.text}}}`"
@@ -243,6 +251,8 @@ def word_meant(
 def _instead(entry: Entry, family: str) -> str | None:
     """The sentence on a word of other programs, with the entry's own values."""
     other, place = instead(family, entry.word), entry.span
+    if other is not None and entry.fields is not None and not isinstance(entry.fields, Mapping):
+        return re.sub(r"<\w+#?[|][^>]*>", entry.fields.span.text.replace("\\", r"\\"), other, count=1)
     nothing = Mapping({}, {}, True, place.source, place.start, place.end)
     return None if other is None else filled(other, entry.fields if isinstance(entry.fields, Mapping) else nothing, ())
 
@@ -324,6 +334,8 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
     having, text = having_fields(list(node.entries), family, catalogue), node.span.text
     if (meant := _told(node, having or catalogue.choices(family), family, catalogue)) is not None:
         return meant
+    if not having and (renamed := _renamed(node, family, catalogue)) is not None:
+        return f"the word stands around its fields: write `{renamed}`"
     for name, value in () if having else node.entries.items():
         having = having_fields([name], family, catalogue)
         text = f"{{{name}: {value.span.text}}}"
@@ -332,6 +344,18 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
     return (
         f"the word stands around its fields, {', '.join(having)}: write `{{{having[0]}: {text}}}`" if having else None
     )
+
+
+def _renamed(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
+    """Fields, some of them by names of other programs, in the first word of a family that has them all."""
+    for word in sorted(catalogue.choices(family), key=lambda one: one != DEFAULT.get(family)):
+        cls = catalogue.load(family, word)
+        known = [] if cls is None else [written_name(name) for name in cls.model_fields]
+        named = {one: one if one in known else same_as(one, known) for one in node.entries}
+        if node.entries and all(named.values()) and len({*named.values()}) == len(named):
+            told = ", ".join(f"{named[one]}: {value.span.text}" for one, value in node.entries.items())
+            return f"{{{word}: {{{told}}}}}"
+    return None
 
 
 def _told(node: Mapping, words: Collection[str], family: str, catalogue: Catalogue) -> str | None:

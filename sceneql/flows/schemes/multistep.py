@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.flows.layout import PLAN
 from sceneql.system import Control, Method, Needs, Prepared, Stepper
+from sceneql.system.stepping import UNREAD
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -22,8 +23,8 @@ SAME = 1e-9
 
 def stepper(scheme: int, order: int, step: float) -> Stepper:
     """The stepper of multistep_kernels.step with fixed steps [s]."""
-    kernel = "sceneql.flows.schemes.multistep_kernels:step"
-    method = Method(step=kernel, order=order, numbers=(scheme, 0, 0), settings=(), last_stage=0)
+    kernels = "sceneql.flows.schemes.multistep_kernels"
+    method = Method(step=f"{kernels}:step", order=order, dense=f"{kernels}:dense", numbers=(scheme, 0, 0), last_stage=0)
     return Stepper(
         method, Control(first_step=step, unsolved=UNSOLVED), Needs(prepare="sceneql.flows.schemes.multistep:prepare")
     )
@@ -55,7 +56,7 @@ class Tables:
 
 
 def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[int]:
-    """The integers of a field's diffusion operator (multistep_kernels), with transforms that solve it on a plain box.
+    """The integers of a field's diffusion operator (operators_kernels), with transforms that solve it on a plain box.
 
     The transforms are the exact solver for a box with a constant coefficient, else a preconditioner. ``tallied``:
     whether an entry for the total inflow follows the field in y.
@@ -140,7 +141,7 @@ def _alike(found: Any, wanted: Any, chosen: Any) -> bool:
 
 
 def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, str]:
-    """(flow, operators (multistep_kernels), number of velocities among them, tables of transforms, text for `explain`).
+    """(flow, operators (operators_kernels), number of velocities among them, tables of transforms, text for `explain`).
 
     Raises ScriptError for an island without a flow, or with varying density or viscosity.
     """
@@ -178,16 +179,21 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     """Settings, numbers and scratch of multistep_kernels.step. Raises ScriptError as ``operators_of``."""
     import numpy as np
 
-    from sceneql.flows.schemes.multistep_kernels import ARRAYS, HEAD, OPERATOR
+    from sceneql.flows.schemes.multistep_kernels import ARRAYS
+    from sceneql.flows.schemes.operators_kernels import HEAD, OPERATOR
 
     flow, operators, velocities, tables, text = operators_of(system)
     head = (*stepper.method.numbers, len(operators), HEAD + OPERATOR * len(operators), velocities)
     volume = flow.areas[0] * flow.spacing[0]
+    kernels = system.structure
+    alone = not (kernels.local or kernels.after or kernels.settling or system.pairs)
+    first = (-np.inf, -np.inf, 1.0, flow.viscosity / flow.density / volume, not alone)
     return Prepared(
-        settings=np.array([-np.inf, -np.inf, 1.0, flow.viscosity / flow.density / volume, *tables.numbers]),
+        settings=np.array([*first, *tables.numbers]),
         numbers=np.array([*head, *np.ravel(operators), *flow.ints], dtype=np.int64),
         work=ARRAYS * len(system.y) + 3 * int(np.prod(flow.cells.shape)),
         text=text,
+        last_stage=UNREAD if alone else None,
     )
 
 

@@ -56,7 +56,7 @@ def flow_in(t, y, rate, floats, ints):
         for k in range(nz):
             for j in range(ny):
                 row = start + nx * (j + ny * k)
-                along_row(u, through, component, j, k, rows, floats, one)
+                along_row(u, through, 1.0, component, j, k, rows, floats, one)
                 row_of(density, j, k, component, -1, below, one)
                 for i in range(nx + 1):
                     crossing = rows[wide + i]
@@ -78,7 +78,7 @@ def flow_in(t, y, rate, floats, ints):
             for other in range(nz if axis == 1 else ny):
                 for place in range(count if periodic else count + 1):
                     j, k = (place, other) if axis == 1 else (other, place)
-                    across_row(u, through, component, axis, place, j, k, flux, rows, floats, one)
+                    across_row(u, through, 1.0, component, axis, place, j, k, flux, rows, floats, one)
                     base = start + (nx * ny * other if axis == 1 else nx * other)
                     here, before = base + place * stride, base + (place - 1) * stride
                     if periodic and place == 0:

@@ -127,8 +127,11 @@ def _flipped(
         return {}
     old = triangles[np.stack([at, other], axis=1).ravel()]
     new = np.stack([np.stack([c, a, d], axis=1), np.stack([d, b, c], axis=1)], axis=1).reshape(-1, 3)
-    least = [agreement(tape, polygons, corners).reshape(-1, 2).min(axis=1) for corners in (old, new)]
-    gains = least[1] - least[0]
+    told = [agreement(tape, polygons, corners) for corners in (old, new)]
+    gains = np.subtract(*(cosines.reshape(-1, 2).min(axis=1) for cosines in told[::-1]))
+    # A sliver that faces inward is better than a large triangle that does.
+    wrong = [_areas(polygons, of, cosines < 0.0) for of, cosines in zip((old, new), told, strict=True)]
+    gains[wrong[1] > wrong[0]] = 0.0
     changed: dict[int, tuple[int, int, int]] = {}
     edges: set[frozenset[int]] = set()
     best = np.argsort(-gains, kind="stable")
@@ -141,6 +144,15 @@ def _flipped(
             changed |= {rows[0]: tuple(first), rows[1]: tuple(second)}
             edges.add(edge)
     return changed
+
+
+def _areas(polygons: Polygons, triangles: Rows, chosen: NDArray[np.bool_]) -> Floats:
+    """(n,) twice the areas of pairs of triangles (2 n, 3), of the ``chosen`` (2 n,) alone [m^2]."""
+    import numpy as np
+
+    a, b, c = polygons.vertices[triangles].transpose(1, 0, 2)
+    found: Floats = (np.linalg.norm(np.cross(b - a, c - a), axis=1) * chosen).reshape(-1, 2).sum(axis=1)
+    return found
 
 
 class Sides:
