@@ -50,7 +50,7 @@ class Crossing:
         """A warning where bodies were deep in one another."""
         if self.part <= DEEP:
             return []
-        help = "take shorter steps, or `mode: exact` where it can be; or something presses it to where it has no room"
+        help = "take shorter steps, or `mode: exact`; what leads or presses one into the other must leave it room"
         return [Diagnostic("bodies-cross", self.text, self.span, help, severity="warning")]
 
 
