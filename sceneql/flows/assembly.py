@@ -286,6 +286,8 @@ class _Builder:
 
     def _projected(self, x: Floats, ints: Any) -> Floats:
         """Velocities x (faces,) made divergence-free, in place. Raises ScriptError if iteration does not converge."""
+        if not self.assembly.marched:
+            return x
         from sceneql.flows.projection_kernels import project
 
         own = ints.copy()

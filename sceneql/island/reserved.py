@@ -34,6 +34,8 @@ class Reserved:
     """Whether a contact can go on in another mode where it finds no solution (Assembly.gives_way)."""
     by_tolerance: bool = field(init=False, default=False)
     """Whether the solver is explicit with adaptive steps."""
+    marched: bool = field(init=False, default=True)
+    """Whether it is to be marched (Assembly.marched)."""
     _starts: list[Floats] = field(init=False, default_factory=list)
     _size: int = field(init=False, default=0)
     _bodies: int = field(init=False, default=0)

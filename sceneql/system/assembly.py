@@ -252,6 +252,11 @@ class Assembly(Protocol):
     the island is then assembled anew and goes on from that instant."""
     by_tolerance: bool
     """Whether the solver is explicit with adaptive steps."""
+    marched: bool
+    """Whether the island is to be marched; else `check` asks for errors alone, and numbers that do not tell any may be
+    left as they are."""
+    overlaps: list[Any]
+    """What measures in a run how deep rigid bodies are in one another (contacts/distance/depths.py)."""
     contact_why: str
     """Why contacts of rigid bodies have their mode, for `explain`."""
 
