@@ -148,7 +148,8 @@ def _end(graph: SimulationGraph, island: Island, kind: Any, solver: Solver) -> _
     state = march.state(name)
     unknowns, along = kind.along(name, state)
     seconds = statistics.median(steps[1:] or steps)
-    return _End(kind.spaced(), seconds, min(whole), *kind.samples(state), unknowns, along)
+    places, values, weights = kind.samples(state)
+    return _End(kind.spaced(), seconds, min(whole), places, values, weights, unknowns, along)
 
 
 def _squares(values: Floats) -> Floats:

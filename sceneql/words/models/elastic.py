@@ -394,7 +394,7 @@ class Elastic(Resized, Model):
         from sceneql.bodies.elements import skin
         from sceneql.bodies.spring_look import plates
 
-        assert state.bodies is not None and self._made is not None
-        surface, places = moment.surface(name, self.material, self.color), masses.positions(state.bodies, state)
+        assert self._made is not None
+        surface, places = moment.surface(name, self.material, self.color), self.read("positions", state)
         yield self.skin.drawn(name, surface, places)
         yield from plates(name, places, self._made.glued, skin.triangles(self.solid.mesh))
