@@ -1,4 +1,4 @@
-"""Warning of masses that only their weight moves, and that certainly fall into a solid without a contact."""
+"""Warnings of masses that fall into a solid without a contact, and of those that would hit a ground but never fall."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from typing import Any, cast
 
 from sceneql.compiler.passes.fillings import Beginning
 from sceneql.compiler.passes.overlaps import UNKNOWN, field_at
-from sceneql.compiler.passes.unseen import level_of
+from sceneql.compiler.passes.unforced import starts_moving
+from sceneql.compiler.passes.unseen import ground_level, level_of
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Island, Task
-from sceneql.kinds import Contact, Interaction, Model, Object, Value
+from sceneql.kinds import Contact, Interaction, Model, Object, Tie, Value
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.run.falling import HELP, MOST_OBJECTS, standing
 
@@ -59,6 +60,26 @@ def warn_of_falling_through(
                 between = [ref.name for ref in cast(Contact, tasks[contact].kind).ties()] if contact else []
                 help = f"name it there, `between: [{', '.join([*between, hit[0]])}]`" if contact else HELP
                 found.warning("falls-through", text, tasks[name].span, help=help)
+
+
+def warn_of_unpulled(tasks: Mapping[str, Task], groups: Sequence[Island], found: Diagnostics) -> None:
+    """Warn of each model that no force pulls down to the ground, the only thing that stands still and that it hits."""
+    level = ground_level(tasks)
+    forces = [task for task in tasks.values() if isinstance(task.kind, Interaction) and not isinstance(task.kind, Tie)]
+    start: Any = Beginning(tasks)
+    for island in groups if level is not None and not forces else ():
+        for name in island.models:
+            task, hit = (
+                tasks[name],
+                {other for _, model, others in island.contacts if model == name for other in others},
+            )
+            still = {other for other in hit if tasks[other].original is None}
+            if not still or task.span is None or not all(getattr(tasks[one].kind, "grounds", False) for one in still):
+                continue
+            starts = starts_of(cast(Model, task.kind), tasks, start) if starts_moving(task.kind) else []
+            if starts and all(v[1] >= 0.0 and place[1] - level > 1.5 * reach for place, v, reach in starts):
+                text = f"'{name}' never comes down to '{min(still)}': no force acts on it"
+                found.warning("nothing-falls", text, task.span, help="write `forces: [gravity]`")
 
 
 def pull_of(forces: Sequence[Interaction]) -> tuple[float, ...] | None:

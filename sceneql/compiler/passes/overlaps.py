@@ -23,6 +23,8 @@ SIDE = 5
 """Number of lattice points along each axis of the box shared by two objects."""
 DEEP = 0.02
 """Least depth of an overlap, relative to the smaller object's size: touching objects do not overlap."""
+SUNK, NEAR = 0.3, 1e-3
+"""Depth of a ball, relative to its radius, from which on there is a warning, and distance at which slopes are taken."""
 MOST_PAIRS = 100
 """Number of pairs above which none is compared; the run does it."""
 UNKNOWN = (TypeError, ValueError, ArithmeticError, RunFailure, LimitRefused, ScriptError)
@@ -35,8 +37,12 @@ def report_overlaps(tasks: Mapping[str, Task], groups: Sequence[Island], found: 
     for body, other, whole in pairs if len(pairs) <= MOST_PAIRS else ():
         try:
             inside = _overlap(body, other, whole, tasks, start)
+            sunk = "" if inside or whole else _sunk(body, other, tasks, start)
         except UNKNOWN:
             continue
+        if sunk:
+            text = f"'{body}' starts in part inside '{other}', and is pushed out"
+            found.warning("starts-inside", text, tasks[body].span, help=sunk)
         if inside:
             text = f"'{body}' starts inside '{other}'"
             help = "move one of them away, or name under `between` what may touch, without one of them"
@@ -91,6 +97,27 @@ def _overlap(body: str, other: str, whole: bool, tasks: Mapping[str, Task], star
     places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     depths = -np.maximum(*(field_at(shape, places, start) for shape in shapes))
     return float(depths[depths > least].max(initial=0.0))
+
+
+def _sunk(body: str, other: str, tasks: Mapping[str, Task], start: Any) -> str:
+    """The help for a ball whose center is outside of an object that it reaches far into; empty for others."""
+    import numpy as np
+
+    shapes: list[Any] = [tasks[body].original, tasks[other].original or tasks[other].kind]
+    low, high = shapes[0].extent(np.eye(3, 4), start)
+    center, sizes = (low + high) / 2, high - low
+    radius = float(sizes.max()) / 2
+    if not (np.isfinite(radius) and np.allclose(sizes, 2 * radius)) or type(shapes[1]).implicit is Object.implicit:
+        return ""
+    steps = NEAR * radius * np.eye(3)
+    away, *around = field_at(shapes[1], np.stack([center, *(center + steps), *(center - steps)]), start)
+    slope = (np.array(around[:3]) - around[3:]) / (2 * NEAR * radius)
+    steepness = float(np.linalg.norm(slope))
+    if not 0.5 < steepness < 2.0 or radius - away / steepness < SUNK * radius:
+        return ""  # its field is no distance there
+    place = center + (radius - away / steepness) * slope / steepness
+    text = " ".join(f"{one:.4g}" for one in place + 0.0)
+    return f"a ball's position is its center: it touches '{other}' at `position: {text} m`"
 
 
 def field_at(shape: Object, places: Floats, start: Any) -> Floats:

@@ -8,6 +8,7 @@ from math import dist, pi, sqrt
 from sceneql.graph import Task
 from sceneql.kinds import Camera, Kind, Light, Model, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.expression import Link
 
 DIM = 3.0
 """[W] power of all lamps together below which a scene of some meters is nearly dark."""
@@ -32,11 +33,11 @@ def warn_of_unseen(
             found.warning("nothing-drawn", text, tasks[picture].span or written[0].span, help=help)
         camera = tasks.get(cameras.get(picture, ""))
         mirrors = any(getattr(tasks[name].kind, "material", None) for name in names if tasks[name] not in parts)
-        if camera is not None and parts and not mirrors and all(_behind(task, camera) for task in parts):
-            start = any(task.original or isinstance(task.kind, Model) for task in parts)
+        if camera is not None and parts and not mirrors and all(_behind(task, camera, tasks) for task in parts):
+            start = any(_moves(task) for task in parts)
             text = f"'{camera.name}' sees nothing{' but the ground' if len(parts) < len(names) else ''}: all "
             text += f"{'else ' if len(parts) < len(names) else ''}that is drawn is behind it"
-            middle = next((place for task in parts for place in _places(task)), None)
+            middle = next((place for task in parts for place in _places(task, tasks)), None)
             at = "is the place in the middle" if middle is None else f"is the place in the middle, as `{_text(middle)}`"
             text += " at the start" if start else ""
             found.warning("not-seen", text, camera.span, help=f"turn it round: `look_at` {at}")
@@ -87,22 +88,33 @@ def level_of(kind: Kind) -> float | None:
     return base[1] + float(height.number()) if up[0] == up[2] == 0 < up[1] else None
 
 
-def _behind(task: Task, camera: Task) -> bool:
+def _behind(task: Task, camera: Task, tasks: Mapping[str, Task]) -> bool:
     """Whether what stands still, or starts somewhere, certainly lies there behind a camera that stands still."""
     eye, aim = (_place(getattr(camera.kind, field, None)) for field in ("position", "look_at"))
     if eye is None or aim is None or (away := dist(eye, aim)) == 0:
         return False
     reach = MASS if isinstance(task.kind, Model) else _reach(task.original or task.kind)
-    ahead = [sum((a - e) * (p - e) for e, a, p in zip(eye, aim, at, strict=True)) / away for at in _places(task)]
+    ahead = [sum((a - e) * (p - e) for e, a, p in zip(eye, aim, at, strict=True)) / away for at in _places(task, tasks)]
     return reach is not None and bool(ahead) and max(ahead) < -reach
 
 
-def _places(task: Task) -> list[tuple[float, ...]]:
+def _moves(task: Task) -> bool:
+    """Whether a part is a model, or stands where a model says."""
+    at = getattr(task.kind, "position", None)
+    return bool(task.original) or isinstance(task.kind, Model) or (isinstance(at, Value) and not at.constant)
+
+
+def _places(task: Task, tasks: Mapping[str, Task]) -> list[tuple[float, ...]]:
     """Where an object stands or starts, or the masses of a model start [m]; empty where that is not known."""
     if isinstance(task.kind, Model):
         known = [mass.position for mass in task.kind.static_masses().values()]
         return [] if None in known else [place for place in known if place is not None]
-    at = _place(getattr(task.original or task.kind, "position", None))
+    value = getattr(task.original or task.kind, "position", None)
+    at = _place(value)
+    if at is None and isinstance(value, Value) and isinstance(value.expr, Link):  # of a mass that it follows
+        model, mass = tasks.get(value.expr.task), value.expr.output.rpartition(".")[0]
+        masses = model.kind.static_masses() if model is not None and isinstance(model.kind, Model) else {}
+        at = masses[mass].position if mass in masses else None
     return [] if at is None else [at]
 
 
