@@ -246,6 +246,8 @@ class Reader:
             raise Unreadable  # which arm was meant is not known
         if all(get_origin(arm) is Literal for arm in fitting):
             return self._choice(node, tuple(choice for arm in fitting for choice in get_args(arm)), what)
+        if (alone := likely.value_alone(self, node, arms, what)) is not None:
+            raise self._fail("wrong-shape", f"{what} takes its value alone", node.span, alone)
         for arm in fitting[:-1]:
             attempt = replace(self, found=Diagnostics())
             attempt = replace(attempt, names=replace(self.names, found=attempt.found))

@@ -26,7 +26,7 @@ OF_FORMULAS = (
         "deg degrees rad radians deg2rad rad2deg",
         "an angle has its unit: write `30 deg`, or `x*(1 deg)`",
     ),
-    ("function", "gaussian gauss gaussian2d", "write `exp(-((x - 0.5)^2 + (y - 0.5)^2)/0.1^2)`"),
+    ("function name", "gaussian gauss gaussian2d", "write `exp(-((x - 0.5)^2 + (y - 0.5)^2)/0.1^2)`"),
     ("function", "pow power", "write `a^b`"),
     (
         "function",

@@ -63,6 +63,12 @@ OF_SECTIONS = (
         "a flow has one density; of warm or salty fluid that it carries some is lighter by its `buoyancy`: `buoyancy:"
         " {by: heat.temperature, expansion: 3.4e-3 1/K, reference: 300 K}`",
     ),
+    (
+        "field.cloth",
+        "density area_density surface_density weight grammage",
+        "its mass is that of a square meter: `mass: 0.2 kg/m^2`",
+    ),
+    ("field.clock", "start begin t0 from", "time begins at 0 s: leave it out"),
     ("field.gear", "ratio gear_ratio transmission", "its teeth say it: a ratio of 2 is `teeth: 40 20`"),
     (
         "field.streamlines",

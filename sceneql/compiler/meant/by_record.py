@@ -14,6 +14,7 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler.annotations import unwrap
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.meant.chained import swept
 from sceneql.compiler.meant.own_values import in_si
 from sceneql.compiler.meant.unwrapped import unwrapped
 from sceneql.compiler.meant.values_elsewhere import quantities_fitting
@@ -45,6 +46,9 @@ SHOWN = 300
 def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:
     """The help for an unknown field of a record, by its other fields and the parts that it names."""
     known = [kinds.written_name(key) for key in cls.model_fields]
+    sweep = node.entries.get("sweep")
+    if "sweep" in known and isinstance(sweep, Scalar) and (path := swept(reader, node.entries, sweep.text)) is not None:
+        return path
     if not issubclass(cls, kinds.Kind):
         return None
     if issubclass(cls, kinds.Object):

@@ -91,7 +91,9 @@ def report_unknown(
         offers = [offer(one, node.entries[name]) for one in same]
         help = help or next((text for fits, text in offers if fits), None)
         help = help or _ends(name, unknown, node, known, offer) or _flat(name, node.entries[name], known)
-        help = help or instead(f"field.{family}", name) or instead("field", name)
+        help = help or instead(f"field.{family}", name)
+        help = help or next((text for _, text in offers if "`" in text and "..." not in text), None)
+        help = help or instead("field", name)
         help = help or (offers[0][1] if offers else None)
         help = help or inside(name, node.entries[name])
         help = help or _like(name, node.entries[name], known, offer, family, catalogue)
@@ -219,7 +221,8 @@ def word_meant(
     if others := catalogue.families_of(entry.word):
         return f"it belongs under '{others[0]}:'"
     if fields is None and not entry.word.isidentifier() and (having := having_fields([entry.name], family, catalogue)):
-        word = DEFAULT.get(family) if DEFAULT.get(family) in having else having[0]
+        beside = [one.word for one in script.sections.get(family, {}).values() if one.word in having]
+        word = next(iter(beside), DEFAULT.get(family) if DEFAULT.get(family) in having else having[0])
         text = f"main: {{{word}: {{{entry.name}: {entry.word}}}}}"
         return f"a part has a name, and a word around its fields: write `{text}`"
     table = script.root.entries.get(family)

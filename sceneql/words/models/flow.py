@@ -73,7 +73,7 @@ class Flow(Model):
     """Fields among its outputs that are of both signs."""
 
     said_by: ClassVar = {
-        "reynolds": "write the viscosity that it makes, density times speed times length over it"
+        "reynolds": "it is density times speed times length over viscosity: `viscosity: 1 kg/m^3*1 m/s*1 m/100`"
     } | dict.fromkeys(
         ("inlet", "outlet", "inflow", "outflow", "walls", "wall", "sides", "boundaries"),
         'sides are told by `boundary: {left: {inflow: {velocity: "[1, 0]"}}, right: {outflow: {}}}`; others are walls',
