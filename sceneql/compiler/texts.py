@@ -85,8 +85,8 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
         found.error("syntax", "a '$' before braces would be drawn as it stands", node.span, help=help)
         return None
     if (bare := _DOLLAR.search(text)) is not None and (bare[1] == "time" or bare[1] in names.defines):
-        form = ":.1f s" if bare[1] == "time" else ""
-        help = f"a text has its values in braces: write `{{{bare[1]}{form}}}`"
+        shown = ":.1f s" if bare[1] == "time" else ""
+        help = f"a text has its values in braces: write `{{{bare[1]}{shown}}}`"
         found.error("syntax", f"'{bare[0]}' would be drawn as it stands", node.span, help=help)
         return None
     ok = ok and not _twice(pieces, node.span, found)
