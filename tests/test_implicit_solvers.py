@@ -14,6 +14,7 @@ from sceneql.bodies import springs as springs_module
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.island import jacobian as layout
 from sceneql.linear import stage, stage_kernels
+from sceneql.linear.kept_factors_kernels import solve_by_kept
 from sceneql.march import driver
 from sceneql.march.march import March
 from sceneql.march.modes import jacobian
@@ -218,8 +219,9 @@ def test_a_stage_without_a_solution_is_a_located_failure():
 
 
 @pytest.mark.parametrize(("count", "kind"), [(6, "dense"), (60, "sparse")])
-def test_a_stage_system_is_solved(tmp_path, count, kind):
+def test_a_stage_system_is_solved(tmp_path, monkeypatch, count, kind):
     """(1 - a J) d = r for the Jacobian by differences, though positions and fixed masses are eliminated."""
+    monkeypatch.setattr(stage, "KEPT", 0)
     from sceneql.pipeline import load
     from sceneql.run.run import Run
 
@@ -241,6 +243,16 @@ def test_a_stage_system_is_solved(tmp_path, count, kind):
     assert (np.eye(n) - a * jacobian(march)) @ d == pytest.approx(right, abs=1e-5)
     if kind == "sparse":
         assert plan.numbers[stage_kernels.SYMMETRIC] == 1
+        # The factors serve another matrix, by conjugate gradients: one that is near, not one that is far.
+        for other, near in ((0.31, True), (1e-3, False)):
+            stage_kernels.assemble_stage(plan.numbers, other, values, plan.scales, store)
+            d = right.copy()
+            assert solve_by_kept(plan.numbers, other, values, plan.scales, store, d) == near
+            if near:
+                exact = np.linalg.solve(np.eye(n) - other * jacobian(march), right)
+                assert np.linalg.norm(d - exact) < 0.1 * np.linalg.norm(exact)
+            else:
+                assert (d == right).all()
 
 
 def test_threads_share_the_slopes_to_the_same_bytes(tmp_path, monkeypatch):

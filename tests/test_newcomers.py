@@ -34,6 +34,7 @@ READ = [
     "objects: {ball: {sphere: {position: [0 m, 1 m*sin(6 rad/s*time), 0 m]}}}",
     "define: {at: {keys: {0 s: 0 2 0 m, 1 s: {value: 0 1 0 m}}}}\nobjects: {ball: {sphere: {position: at}}}",
     "objects: {egg: {group: {children: [sphere], scale: {keys: {0 s: 1 1 1, 1 s: 1 2 1}}}}}",
+    "objects: {a: {implicit: {field: x^2 + y^2 + z^2 - 1, bounds: {box: [0 0 0, 1 1 1]}}}}",
     "objects: {egg: {group: {children: [sphere], scale: {x: 1, y: {keys: {0 s: 1, 1 s: 2}}, z: 1}}}}",
 ]
 """What has one meaning alone, though other programs write it so and we do not."""

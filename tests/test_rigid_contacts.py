@@ -1,5 +1,7 @@
 """Rigid bodies in contact, mode `local`: what rests, slides, rolls, leans over and is thrown, against exact values."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -351,3 +353,14 @@ solvers: {main: {rk4: {step: 50 ms}}}
         "energy-gained",
         "contacts made it: take shorter steps, or `mode: exact` where it can be",
     )
+
+
+def test_a_body_that_is_led_down_to_the_floor_is_not_inside(tmp_path):
+    """One that is led on into it is told: errors/bodies-cross."""
+    script = (Path(__file__).parent / "errors" / "bodies-cross.yaml").read_text().replace("end: 0.6 s", "end: 0.48 s")
+    (tmp_path / "scene.yaml").write_text(script)
+    run = Run(load(tmp_path / "scene.yaml", pruned=False))
+    watch = Watch(run, always=True)
+    for time in (0.0, 0.48):
+        watch.look(run.at(time))
+    assert watch.warnings() == ()

@@ -219,8 +219,9 @@ class _Checker:
         """A reader of what is no part."""
         return Reader(self.names, self.found, lambda node, mark, name: None, "", self.folder, self.files)
 
-    def kind(self, family: str, entry: Entry) -> type[Kind] | None:
-        """The class of an entry's word; None after reporting that there is none."""
+    def kind(self, family: str, entry: Entry) -> tuple[type[Kind] | None, str]:
+        """The class of an entry's word, or None after reporting that there is none, and the help that was given."""
+        help = ""
         cls = self.catalogue.load(family, entry.word)
         if cls is None:
             words = self.catalogue.choices(family)
@@ -229,7 +230,7 @@ class _Checker:
             hint = hint or word_meant(entry, family, self.catalogue, self.family_of, self.script)
             help = hint or "the words are " + ", ".join(words)
             self.found.error("unknown-word", f"'{entry.word}' is no word of {family}", entry.word_span, help=help)
-        return cls
+        return cls, help
 
     def family(self, name: str) -> str:
         """The family of an entry's word; that of its section where the word is unknown."""
@@ -266,8 +267,8 @@ class _Checker:
         if entry.word == NONE and entry.fields is None and name in OPTIONAL:
             self.without.add(name)
             return
-        known = self.kind(family, entry)
-        cls = known or judged_as(entry, family, self.catalogue, self.names)
+        known, help = self.kind(family, entry)
+        cls = known or judged_as(entry, family, self.catalogue, self.names, help)
         if cls is None:
             return
         needs: list[str] = []

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 from sceneql.compiler.css_colors import NAMED, css_color
-from sceneql.compiler.meant.output_help import output_meant
+from sceneql.compiler.meant.output_help import output_alone, output_meant
 from sceneql.kinds import Gives
 from sceneql.language.scope import Broken, Entry, Given, Scope
 from sceneql.language.tree import Node, Scalar, Sequence
@@ -21,6 +21,7 @@ from sceneql.quantities.literal import WORD
 from sceneql.quantities.operations import CONSTANTS
 from sceneql.quantities.other_words import OURS
 from sceneql.quantities.parser import parse_value
+from sceneql.quantities.spaced import declared
 from sceneql.quantities.span import Span
 from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import continues_unit, in_words, unit_hint
@@ -286,6 +287,7 @@ class Names:
             )
         else:
             hint = self._copy_number(wanted) or instead("name", wanted)
+            hint = hint or (output_alone(wanted, self._giving) if len(parts) == 1 < len(wanted) else None)
             hint = hint or suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time", *CONSTANTS])
             model = None if hint else self.model_of(parts[0])
             if model is not None:
@@ -300,6 +302,8 @@ class Names:
             giving = next(iter(self._giving(wanted)), None)
             if hint is None and giving is not None:
                 hint = f"a value is named with its part: write `{giving}.{wanted}`"
+            if hint is None and len(parts) == 1:
+                hint = declared(span.source.text, wanted)
             if hint is None and len(parts) == 1:
                 hint = f"names stand under `define`, `define: {{{wanted}: 1 m}}`: `sceneql words define`"
         return Diagnostic("unknown-name", message, span, hint)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
 from sceneql import kinds
+from sceneql.kinds.word import read_default
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.language.within import within
 from sceneql.quantities.diagnostic import Diagnostics
@@ -40,6 +42,28 @@ def validated(cls: type[BaseModel], got: dict[str, Any], node: Node | None, span
         place = _place(told.path, node, span, told.at_key, told.part)
         found.error(told.code, told.text, place, help=told.help)
     return None if problems and issubclass(cls, kinds.Kind) else result
+
+
+def report_known(cls: type[BaseModel], got: dict[str, Any], node: Node | None, span: Span, found: Diagnostics) -> None:
+    """Report the problems of a record of which some fields could not be read, as far as the others tell them.
+
+    What asks for a field that was not read ends the search: it has no value.
+    """
+    if not issubclass(cls, kinds.Record) or cls.problems is kinds.Record.problems:
+        return
+    given = node.entries if isinstance(node, Mapping) else {}
+    values = dict(got)
+    for name, info in cls.model_fields.items():
+        if name not in got and kinds.written_name(name) not in given and not info.is_required():
+            values[name] = read_default(info)
+    record = cls.model_construct({*got}, **values)
+    for name in cls.model_fields:
+        if name not in values:
+            record.__dict__.pop(name, None)
+    with suppress(AttributeError):  # of a field that was not read
+        for told in record.problems():
+            place = _place(told.path, node, span, told.at_key, told.part)
+            found.error(told.code, told.text, place, help=told.help)
 
 
 def _with_field(cls: type[BaseModel], text: str, node: Node | None) -> str | None:

@@ -19,7 +19,7 @@ from sceneql import kinds
 from sceneql.compiler import limits, paint, values
 from sceneql.compiler.annotations import could_be, is_fixed, unwrap
 from sceneql.compiler.formulas import Wanted, read_formula
-from sceneql.compiler.meant import likely, under_names
+from sceneql.compiler.meant import by_side, likely, under_names
 from sceneql.compiler.meant import quantity_help as helped
 from sceneql.compiler.meant.chained import improve
 from sceneql.compiler.meant.quantity_help import TRUE
@@ -27,7 +27,7 @@ from sceneql.compiler.meant.unknown import report_unknown
 from sceneql.compiler.names import Names
 from sceneql.compiler.number_files import names_a_file, read_numbers
 from sceneql.compiler.paths import read_path
-from sceneql.compiler.problems import Unreadable, validated
+from sceneql.compiler.problems import Unreadable, report_known, validated
 from sceneql.compiler.texts import read_text, unescaped
 from sceneql.kinds.values import Verbatim
 from sceneql.language.repeat import numbered
@@ -99,7 +99,9 @@ class Reader:
             other = alone and all(instead(f"field.{title}", one) for one in unknown) and bool(unknown)
             mistaken = likely.meant(self, cls, node)
             helps = [one.help or "" for one in self.found.found[before:]]
-            mistaken |= (shown := {name for name in known for help in helps if f"`{name}: " in help})
+            if any(help.startswith(likely.ANOTHER) for help in helps):
+                mistaken |= {*known}
+            mistaken |= (shown := {name for name in known for help in helps if re.search(rf"`\{{?{name}: ", help)})
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)
             if name not in written:
@@ -128,6 +130,8 @@ class Reader:
                 if name in shown and [one.code for one in errors] == ["wrong-shape"]:
                     del self.found.found[before:]  # an unknown field's help writes it anew
         if not ok:
+            if {*written} <= {*map(kinds.written_name, cls.model_fields)} and not (node is not None and unsure(node)):
+                report_known(cls, got, node, span, self.found)
             raise Unreadable
         return self._some(validated(cls, got, node, span, self.found))
 
@@ -242,6 +246,8 @@ class Reader:
             raise Unreadable  # which arm was meant is not known
         if all(get_origin(arm) is Literal for arm in fitting):
             return self._choice(node, tuple(choice for arm in fitting for choice in get_args(arm)), what)
+        if (alone := likely.value_alone(self, node, arms, what)) is not None:
+            raise self._fail("wrong-shape", f"{what} takes its value alone", node.span, alone)
         for arm in fitting[:-1]:
             attempt = replace(self, found=Diagnostics())
             attempt = replace(attempt, names=replace(self.names, found=attempt.found))
@@ -340,7 +346,8 @@ class Reader:
 
     def _dict(self, node: Node, arms: tuple[Any, ...], what: str) -> dict[Any, Any]:
         if not isinstance(node, MappingNode):
-            better = under_names.by_name(node, arms[1], bool(unwrap(arms[0])[1]))
+            better = by_side.parts_at_sides(self, node, arms[1], what)
+            better = better or under_names.by_name(node, arms[1], bool(unwrap(arms[0])[1]))
             raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, better)
         named, result, ok = unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sceneql.island.reserved import Reserved
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -19,6 +19,8 @@ class Offered(Reserved):
 
     fields: dict[tuple[str, str], Grid] = field(init=False, default_factory=dict)
     """The grids by model and output."""
+    overlaps: list[Any] = field(init=False, default_factory=list)
+    """Of contacts of rigid bodies (system.Assembly)."""
     _grids: list[Grid] = field(init=False, default_factory=list)
     _flows: dict[str, Flow] = field(init=False, default_factory=dict)
     _membranes: dict[str, Membrane] = field(init=False, default_factory=dict)

@@ -274,6 +274,11 @@ class _Scan:
             return close
         end, _ = self.plain(at, nested=depth > 0)
         rest = self.text[at:end]
+        if rest == ";":
+            caret = Span(self.source, at, end)
+            ended = Diagnostic("yaml-syntax", "nothing can stand behind this bracket", caret, "leave out the `;`")
+            self.faults.append(Fault("yaml-syntax", at, end, at, "", ended, " "))
+            return end
         sign = _COMMENT.match(rest)
         if sign is not None and (sign[0] == "//" or self.text[start] == "{"):
             caret = Span(self.source, at, end)

@@ -12,7 +12,7 @@ import yaml
 
 from sceneql.language.broken_values import Fault, broken_halves, broken_near, report, swallowed
 from sceneql.language.encoded import MOST_BYTES, too_large
-from sceneql.language.lines import doubled, lacking, left_out, marked, twice, unparted
+from sceneql.language.lines import doubled, lacking, left_out, marked, no_script, twice, unparted
 from sceneql.language.plain import cut_off, kind_of
 from sceneql.language.repair import blanked, cut_short, joined, repaired
 from sceneql.language.syntax import explain, place, unprintable
@@ -45,8 +45,7 @@ def compose(source: Source, found: Diagnostics | None = None) -> Mapping:
     if isinstance(root, Mapping):
         return root
     message = "a script is a mapping of sections, not a list or a single value"
-    help = "write `objects:` and the objects below it, indented"
-    raise ScriptError([Diagnostic("script-shape", message, root.span, help)])
+    raise ScriptError([Diagnostic("script-shape", message, root.span, no_script(root.span.text))])
 
 
 def compose_node(source: Source, start: int = 0, found: Diagnostics | None = None) -> Node:

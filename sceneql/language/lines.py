@@ -15,6 +15,7 @@ from sceneql.language.broken_values import Fault
 from sceneql.language.repeat import numbered
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, hole
 from sceneql.quantities.diagnostic import Diagnostic, Note
+from sceneql.quantities.instead import instead
 from sceneql.quantities.span import Source, Span
 
 _HEAD = re.compile(r"[ ]*(?:- +)*")
@@ -24,6 +25,9 @@ _NO_SPACE = re.compile(rf"({_NAME}):(?=[\[{{])")
 _NO_COLON = re.compile(rf"({_NAME})[ ]*(?=[\[{{])")
 _GLUED = re.compile(r"([\w.'-]+):(?=\S)")
 _COMMENT: Final = "a comment begins with `#`: write `#{}`"
+COMMENT: Final = re.compile(r"//|--+(?=\s)|/\*|%+(?=\s|$)|;+(?=\s|$)|(?i:rem)(?=\s)")
+"""Beginnings of comments of other languages."""
+_ASSIGNED = re.compile(r"(?:let |var |const |float |int |double |auto )?\s*([^\W\d]\w*)\s*=\s*([^={;]+);?\s*")
 _COLON = re.compile(r":(?=\s|\Z)")
 
 
@@ -128,15 +132,32 @@ def _without(source: Source, number: int) -> Fault:
     written = line[head:].split(" #")[0].rstrip()
     name, _, rest = written.partition(" ")
     rest = rest.strip().removeprefix("=")
-    if written.startswith("//"):
-        return _line(
-            source, number, head, head, head + len(written), "a line that is no key", _COMMENT.format(written[2:])
-        )
+    if (sign := COMMENT.match(written)) is not None:
+        help = _COMMENT.format(written[sign.end() :].removesuffix("*/").rstrip())
+        return _line(source, number, head, head, head + len(written), "a line that is no key", help)
+    if head == 0 and (other := _of_code(name, written)) is not None:
+        return _line(source, number, head, head, head + len(written), "a line that is no key", other)
     help = f"write `{name}: {rest.strip()}`" if rest else f"write `{name}:` with what belongs to it below, indented"
     bare = not rest and head and not line[:head].strip() and not _holds(source, number)
     if bare and _HEAD_KEY.match(source.line(_margin(source, number))):
         help = f"a word without fields has a name before it: write `{name}: {name}`; or {help.removeprefix('write ')}"
     return _line(source, number, head, head, head + len(written), "a key without a colon", help)
+
+
+def _of_code(name: str, written: str) -> str | None:
+    """The help for a line of a program at the left margin: ``import numpy as np``, ``let r = 2``, ``r = 2``."""
+    value = _ASSIGNED.fullmatch(written)
+    if value is not None:
+        return f"values have names under `define`: write `define: {{{value[1]}: {value[2].strip()}}}`"
+    return instead("section", name.partition("(")[0])
+
+
+def no_script(text: str) -> str:
+    """The help for a text that is no mapping: lines of a program, XML, or another list or value."""
+    if text.startswith("<"):
+        return "it is YAML, and no XML: write `objects: {ball: {sphere: {radius: 0.1 m}}}`: `sceneql words sections`"
+    line = text.partition("\n")[0].strip()
+    return _of_code(line.partition(" ")[0], line) or "write `objects:` and the objects below it, indented"
 
 
 def _second(source: Source, number: int, after: int, colon: int) -> Fault:

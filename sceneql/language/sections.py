@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from typing import Final
@@ -25,6 +26,7 @@ NAMES: Final = ("name", "id")
 """Keys by which other programs name a part."""
 SHOWN: Final = 80
 """Longest text of fields that a message repeats."""
+_EQUATED = re.compile(r"([^\W\d]\w*)\s*=\s*(\S.*)")
 _ENTRY = "an entry is `name: word` or `name: {word: {fields}}`"
 
 
@@ -192,6 +194,8 @@ def section(name: str, node: Node, taken: Collection[str], found: Diagnostics) -
                 result.entries[own], result.keys[own] = item, written.word
     elif not (empty(node) or broken(node)):
         help = f"write `{name}: [{node.text.strip('[] ')}]`" if node.kind == "text" else _ENTRY
+        if (equated := _EQUATED.fullmatch(node.text.strip())) is not None:
+            help = f"a name has a colon behind it: write `{equated[1]}: {equated[2]}`"
         if name == "outputs" and "." in node.text:
             help = "write `outputs: {film: video}`; `sceneql render SCENE -o FILE` names the file"
         found.error("section-shape", f"'{name}' holds parts by name, or a list of words", node.span, help=help)

@@ -34,7 +34,11 @@ _PROBLEMS: Final = (
     ("node content", "a value is missing before this", "a text that begins so goes in quotes"),
     ("comment or", "nothing but a comment may follow | or > on its line", "put the text below, indented, or in quotes"),
     ("indentation indicator", "this cannot follow | or >", "put the text below, indented, or in quotes"),
-    ("directive", "a line that begins with % is a YAML directive, and a script has none", "put it in quotes"),
+    (
+        "directive",
+        "a line that begins with % is a YAML directive, and a script has none",
+        "a comment begins with `#`; a text goes in quotes",
+    ),
     ("tag", "a tag (!) means nothing in a script", "a text that begins with ! goes in quotes"),
 )
 _NO_KEY = re.compile(r"(?:^|[,{\n\r])[ \t]*\Z")

@@ -18,6 +18,7 @@ import math
 
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.pointers_kernels import (
     AT_ENERGY,
     AT_JACOBIAN,
@@ -51,10 +52,13 @@ from sceneql.linear.newton_kernels import (
 from sceneql.linear.stage_kernels import (
     BORDER,
     CORE_AT,
+    KEEPS,
     POSITIONS,
     POSITIONS_AT,
+    SOLVE_STAGE,
     UNKNOWNS,
     along,
+    assemble_stage,
     factor_stage,
     indefinite,
     solve_stage,
@@ -94,6 +98,9 @@ LOOSE = 0.3
 """Last update, over the largest with the same loads of friction, from which on these are taken anew."""
 UNMOVED = 1e-12
 """Part of an update that a limit allows, below which nothing can move."""
+
+
+solve_by_kept = lazy("sceneql.linear.kept_factors_kernels:solve_by_kept", SOLVE_STAGE)
 
 
 @lean_inlined
@@ -192,28 +199,46 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     patience, slowed = (TRUE_AFTER_APART, SLOWED_APART) if has_limit else (TRUE_AFTER, SLOWED)
     before = before_mean = first = 0.0
     rubs = floats[channels.STALE] > unlike(memory)
+    keeps = has_limit and has_potential and plan[KEEPS] == 1
+    kept_factors = aged = False
     for update in range(MOST_APART if has_limit else MOST):
+        solved = False
+        if not stale and aged:
+            for k in range(n):
+                change[k] = residual[k]
+            solved = solve_by_kept(plan, a, jacobian, scales, store, change)
+            stale = not solved
         while stale:
             floats[channels.NEWTON] = a * a
             floats[channels.POSITIVE] = 1.0 if positive else 0.0
-            keeps = has_limit and kept > 0 and kept_positive
-            floats[channels.KEEPS] = 1.0 if keeps else 0.0
-            kept, kept_positive = (kept - 1, True) if keeps else (KEPT, positive)
+            likewise = has_limit and kept > 0 and kept_positive
+            floats[channels.KEEPS] = 1.0 if likewise else 0.0
+            kept, kept_positive = (kept - 1, True) if likewise else (KEPT, positive)
             slopes(functions, t, y, jacobian, floats, ints)
             floats[channels.NEWTON] = floats[channels.POSITIVE] = floats[channels.KEEPS] = 0.0
             if floats[channels.GROWS] != 0.0:
                 return False
+            if kept_factors:
+                assemble_stage(plan, a, jacobian, scales, store)
+                for k in range(n):
+                    change[k] = residual[k]
+                solved = solve_by_kept(plan, a, jacobian, scales, store, change)
+                aged = solved
+                if solved:
+                    break
             memory[FACTORIZATIONS] += 1.0
             regular = factor_stage(plan, a, jacobian, scales, store)
+            kept_factors, aged = keeps and regular, False
             if positive or (regular and not indefinite(plan, store)):
                 break
             positive, slow = True, 0
             patience = min(2 * patience, RARELY)
-        for k in range(n):
-            change[k] = residual[k]
         memory[ITERATIONS] += 1.0
-        if not regular or not solve_stage(plan, a, jacobian, scales, store, change):
-            break
+        if not solved:
+            for k in range(n):
+                change[k] = residual[k]
+            if not regular or not solve_stage(plan, a, jacobian, scales, store, change):
+                break
         left = along(plan, scales, residual, residual)
         if natural:
             lowest = 0.5 * along(plan, scales, change, change)
@@ -306,7 +331,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
                 rubs = floats[channels.STALE] > unlike(memory)
                 done = False
             if done:
-                memory[FACTORED] = a
+                memory[FACTORED] = 0.0 if aged else a
                 memory[POSITIVE] = memory[CAREFUL] = 1.0 if positive else 0.0
                 if has_limit:
                     memory[CAREFUL] = 0.0 if update < EASY else 1.0

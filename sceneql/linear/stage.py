@@ -31,6 +31,8 @@ MOST_OPERATIONS = 2e10
 SOLID = 16
 """Mean number of neighbors of a mass above which a net counts as a solid, whose factors fill in."""
 SOLID_GROUPS = 3000
+KEPT = 100
+"""Multiplications of a factorization over the numbers in its factors from which on these are kept."""
 TILE = 40_000
 """Number of matrix values that a thread assembles at a time; fewer are not worth threads."""
 
@@ -90,9 +92,11 @@ def stage_plan(system: System, exact: bool = False, signs: bool = False) -> Stag
     negatives = number_of(solver.kernels.negatives, NEGATIVES) if told else -1
     head = [*counts, *starts[:7], solver.factors, 0, *kernels, left.unit, *shared, negatives]
     head += [len(inertia.entries), len(inertia.held), *starts[7:9], system.border, len(bordering), starts[9]]
+    head += [int(solver.keeps)]
     assert len(head) == HEAD
     numbers = np.concatenate([np.asarray(part, dtype=np.int64) for part in (head, *lists)])
-    store = square * pattern.nnz + solver.factors + solver.work + 2 * tiles + len(left.core)
+    room = 5 if solver.keeps else 1
+    store = square * pattern.nnz + solver.factors + solver.work + 2 * tiles + room * len(left.core)
     scales = np.concatenate([1.0 / inverse[left.core], inertia.numbers])
     return StagePlan(numbers, scales, store, solver.text)
 
@@ -107,6 +111,8 @@ class _Solver:
     text: str
     counts: bool = False
     """Whether the module counts negative eigenvalues, by `negatives`."""
+    keeps: bool = False
+    """Whether factors serve later matrices too (kept_factors_kernels)."""
 
 
 def _chosen(system: System, kinds: Kinds, exact: bool, signs: bool) -> tuple[Left, Any, _Solver]:
@@ -299,6 +305,7 @@ def _factored(
         plan.work,
         text,
         True,
+        plan.operations > KEPT * plan.factors,
     )
 
 

@@ -10,9 +10,9 @@ row by row); tiles of blocks, the numbers of threads_kernels.threads, the addres
 the kernel that counts negative eigenvalues (-1: none); numbers and places of the entries of inertia that is a matrix,
 and of the values that are held (elimination.Inertia); of the unknowns, how many of the last border the system
 (system.Slopes.border), number and place of what their rows hold of rates (4: place among the values, row, entry of y,
-place in the Jacobian)]. ``scales``: factors of the rows, 1 for those of such inertia;
-then Inertia.numbers. ``store``: values of the matrix, factors, scratch, two numbers a tile, and last a right side
-(unknowns,).
+place in the Jacobian); 1 where factors are kept for later matrices (kept_factors_kernels)]. ``scales``: factors of the
+rows, 1 for those of such inertia; then Inertia.numbers. ``store``: values of the matrix, factors, scratch, where
+factors are kept four vectors of unknowns, two numbers a tile, and last a right side (unknowns,).
 """
 
 from numba import types
@@ -26,7 +26,7 @@ SIZE, UNKNOWNS, VALUES, POSITIONS, TALLIES = range(5)
 CORE_AT, POSITIONS_AT, PARTS_AT, DIAGONAL_AT, TWINS_AT, SOLVER_AT, TALLIES_AT = range(5, 12)
 FACTORS, SYMMETRIC, FACTOR, SOLVE, UNIT = range(12, 17)
 TILES, ENTRY, THREADS, ASSEMBLE, COMPARE, NEGATIVES, INERTIA, HELD, INERTIA_AT, HELD_AT = range(17, 27)
-BORDER, BORDERS, BORDERS_AT, HEAD = range(27, 31)
+BORDER, BORDERS, BORDERS_AT, KEEPS, HEAD = range(27, 32)
 
 ROUNDING = 1e-13
 """Differences of transposed values up to this part of the largest value count as rounding."""
@@ -146,13 +146,19 @@ def is_symmetric(plan, values, found):
 
 
 @lean(FACTOR_STAGE)
-def factor_stage(plan, a, jacobian, scales, store):
-    """Factor the matrix at a [s], a method's coefficient times its step; False where it is singular or not finite."""
-    count = plan[VALUES]
+def assemble_stage(plan, a, jacobian, scales, store):
+    """Assemble the matrix at a [s], a method's coefficient times its step; whether it is symmetric."""
     assemble(plan, a, jacobian, scales, store)
     symmetric = is_symmetric(plan, store, store[store.size - plan[UNKNOWNS] - 2 * plan[TILES] :])
     plan[SYMMETRIC] = 1 if symmetric else 0
-    factors = store[count:]
+    return symmetric
+
+
+@lean(FACTOR_STAGE)
+def factor_stage(plan, a, jacobian, scales, store):
+    """Factor the matrix at a [s]; False where it is singular or not finite."""
+    symmetric = assemble_stage(plan, a, jacobian, scales, store)
+    factors = store[plan[VALUES] :]
     return factor_at(plan[FACTOR])(plan[plan[SOLVER_AT] :], store, factors, factors[plan[FACTORS] :], symmetric)
 
 
@@ -184,14 +190,12 @@ def through_positions(plan, a, jacobian, r, b):
                 b[unit * plan[at] + i] += a * total
 
 
-@lean(SOLVE_STAGE)
-def solve_stage(plan, a, jacobian, scales, store, r):
-    """Solve (1 - a J) d = r by the factors; d takes the place of r, in the size of y. False: no convergence."""
+@lean_inlined
+def right_side(plan, a, jacobian, scales, r, b):
+    """The right side b of the reduced system, its rows scaled."""
     m = plan[UNKNOWNS]
     own_entries = m - plan[BORDER]
-    factors = store[plan[VALUES] :]
-    b = store[store.size - m :]
-    core, positions = plan[CORE_AT], plan[POSITIONS_AT]
+    core = plan[CORE_AT]
     for k in range(own_entries):
         b[k] = r[plan[core + k]]
     for k in range(own_entries, m):
@@ -206,10 +210,25 @@ def solve_stage(plan, a, jacobian, scales, store, r):
             b[k] = r[plan[core + k]]
     for k in range(m):
         b[k] *= scales[k]
-    own, work = plan[plan[SOLVER_AT] :], factors[plan[FACTORS] :]
-    solved = solve_at(plan[SOLVE])(own, store, factors, b, work, plan[SYMMETRIC] == 1)
-    for k in range(own_entries):
+
+
+@lean_inlined
+def solution(plan, a, jacobian, b, r):
+    """All entries d, in the place of r, by the reduced system's solution b."""
+    core, positions = plan[CORE_AT], plan[POSITIONS_AT]
+    for k in range(plan[UNKNOWNS] - plan[BORDER]):
         r[plan[core + k]] = b[k]
     for at in range(positions, positions + 3 * plan[POSITIONS], 3):
         r[plan[at]] += a * jacobian[plan[at + 2]] * r[plan[at + 1]]
+
+
+@lean(SOLVE_STAGE)
+def solve_stage(plan, a, jacobian, scales, store, r):
+    """Solve (1 - a J) d = r by the factors; d takes the place of r, in the size of y. False: no convergence."""
+    factors = store[plan[VALUES] :]
+    b = store[store.size - plan[UNKNOWNS] :]
+    right_side(plan, a, jacobian, scales, r, b)
+    own, work = plan[plan[SOLVER_AT] :], factors[plan[FACTORS] :]
+    solved = solve_at(plan[SOLVE])(own, store, factors, b, work, plan[SYMMETRIC] == 1)
+    solution(plan, a, jacobian, b, r)
     return solved

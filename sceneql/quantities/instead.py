@@ -41,6 +41,7 @@ def time_meant(text: str) -> str | None:
 
 def instead(what: str, word: str) -> str | None:
     """The help for a word of another program that is taken for ``what`` (a key of `INSTEAD`), if known."""
+    word = word.removesuffix("()")
     return INSTEAD.get((what, word)) or INSTEAD.get((what, word.lower()))
 
 

@@ -26,7 +26,7 @@ OF_FORMULAS = (
         "deg degrees rad radians deg2rad rad2deg",
         "an angle has its unit: write `30 deg`, or `x*(1 deg)`",
     ),
-    ("function", "gaussian gauss gaussian2d", "write `exp(-((x - 0.5)^2 + (y - 0.5)^2)/0.1^2)`"),
+    ("function name", "gaussian gauss gaussian2d", "write `exp(-((x - 0.5)^2 + (y - 0.5)^2)/0.1^2)`"),
     ("function", "pow power", "write `a^b`"),
     (
         "function",
@@ -47,7 +47,7 @@ OF_FORMULAS = (
     ),
     (
         "function",
-        "ddt dt derivative deriv diff integral integrate",
+        "d ddt dt derivative deriv diff integral integrate",
         "there is none: velocities are outputs, `fall.velocity`, and states of an `equations` model have a `rate`",
     ),
     (
@@ -139,6 +139,19 @@ OF_FORMULAS = (
     ),
     ("name", "about", "an axis is a field: `rotation: {about: z, angle: 30 deg}`"),
     ("name", "water", "water has a density of `1000 kg/m^3`, and a viscosity of `1e-3 Pa*s`"),
+    ("name", "steel iron", "steel has a density of `7850 kg/m^3`, iron `7870 kg/m^3`"),
+    ("name", "wood ice", "wood has a density of about `600 kg/m^3`, ice `917 kg/m^3`"),
+    (
+        "name",
+        "aluminium aluminum concrete stone rock",
+        "aluminium has a density of `2700 kg/m^3`, concrete `2400 kg/m^3`",
+    ),
+    (
+        "name",
+        "gold silver lead copper",
+        "gold has a density of `19300 kg/m^3`, lead `11340 kg/m^3`, copper `8960 kg/m^3`",
+    ),
+    ("name", "rubber plastic", "rubber has a density of `1100 kg/m^3`, plastic about `1000 kg/m^3`"),
     ("name", "air", "air has a density of `1.2 kg/m^3`, and a viscosity of `1.8e-5 Pa*s`"),
     (
         "unit",
@@ -225,6 +238,18 @@ OF_NAMED = (
     ),
     (
         "objects",
+        "heightfield height_field heightmap terrain landscape elevation_grid elevationgrid",
+        "a height above x and z is a formula: write `{implicit: {field: y - 0.3*sin(x)*cos(z), bounds: {box: [-3 -1 -3,"
+        " 3 1 3]}}}`",
+    ),
+    (
+        "objects",
+        "points point_cloud pointcloud dots scatter markers",
+        "soft dots stand at points: write `{sprites: {at: <points|[0 0 0 m, 1 0 0 m]>}}`; a solid of balls that melt"
+        " together is a `blobby`",
+    ),
+    (
+        "objects",
         "cone pyramid frustum",
         "a cone is a cylinder that is tapered, `{taper: {of: {cylinder: {radius: <radius|0.5 m>, height: <height|2 m>,"
         " position: <position|0 1 0 m>}}, factor: 0.1}}`",
@@ -276,7 +301,7 @@ OF_NAMED = (
     ),
     (
         "models",
-        "dust sparks sparkles snow rain fireworks",
+        "popnet pop emitter particle_system particlesystem particle_emitter dust sparks sparkles snow rain fireworks",
         "write `{particles: {emit: {rate: <rate|100 /s>, velocity: <velocity|0 3 0 m/s>, lifetime: <lifetime|2 s>}}}`",
     ),
     (

@@ -57,6 +57,30 @@ OF_SECTIONS = (
         "colliders collider collides_with collision collisions",
         "what it touches is a contact: write `contacts: [collision]`, which is with all solids",
     ),
+    (
+        "place.flow",
+        "density",
+        "a flow has one density; of warm or salty fluid that it carries some is lighter by its `buoyancy`: `buoyancy:"
+        " {by: heat.temperature, expansion: 3.4e-3 1/K, reference: 300 K}`",
+    ),
+    (
+        "field.cloth",
+        "density area_density surface_density weight grammage",
+        "its mass is that of a square meter: `mass: 0.2 kg/m^2`",
+    ),
+    ("field.clock", "start begin t0 from", "time begins at 0 s: leave it out"),
+    (
+        "field.particles",
+        "grid lattice rows columns nx ny nz",
+        "on a grid stand those that fill an object: `fill: {object: {box: {size: 1 1 1 m, hidden: yes}}, spacing: 10"
+        " cm}`",
+    ),
+    ("field.membrane", "flow fluid in", "it is in the flow around it: leave it out"),
+    (
+        "field.elastic",
+        "resolution cells divisions n subdivisions segments",
+        "how far its nodes are apart says how many there are: `spacing: 5 cm`",
+    ),
     ("field.gear", "ratio gear_ratio transmission", "its teeth say it: a ratio of 2 is `teeth: 40 20`"),
     (
         "field.streamlines",
@@ -259,7 +283,7 @@ OF_SECTIONS = (
     ("section", "seed", "write `clock: {seed: 5}`"),
     (
         "section",
-        "setup draw update loop main start animate init render_loop",
+        "requestanimationframe game_loop gameloop setup draw update loop main start animate init render_loop",
         "a script says what there is and how it moves, not what is done in each frame: values may be formulas of"
         " `time`, models move objects; `sceneql words sections` shows a whole script",
     ),
@@ -269,11 +293,16 @@ OF_SECTIONS = (
         "functions are there without it, `sceneql words functions`; `include: more.yaml` takes in a script",
     ),
     ("section", "for while foreach", REPEAT),
+    (
+        "section",
+        "print printf console.log echo disp puts",
+        "text stands in a caption, `overlays: {title: {caption: {text: hello}}}`: `sceneql words caption`",
+    ),
     ("section", "layout", "write `outputs: {film: {video: {layout: [{each: variant}]}}}`: `sceneql words layout`"),
     ("section", "if switch", f"there is no `if` around parts; in a value {IF}"),
     (
         "section",
-        "def class fn",
+        "def class fn function",
         "a piece with fields of its own is a template: `sceneql words templates`",
     ),
     (
@@ -312,7 +341,7 @@ OF_SECTIONS = (
     ("section", "camera", "write `cameras: {main: {perspective: {position: 0 2 5 m, look_at: 0 1 0 m}}}`"),
     (
         "section",
-        "joints hinges constraints constraint",
+        "joint hinge joints hinges constraints constraint",
         "write `ties: {name: {hinge: {between: [model.a, model.b], at: 0 0 0 m}}}`: `sceneql words hinge`",
     ),
     (
@@ -322,6 +351,7 @@ OF_SECTIONS = (
         " `sceneql words keys`",
     ),
     ("section", "gravity", "write `forces: [gravity]`, or `forces: [{gravity: {strength: 9.81 m/s^2}}]`"),
+    ("section", "addforce add_force push thrust", "write `forces: [gravity, {force: {components: [0, 5, 0]}}]`, in N"),
     ("section", "collision contact", "write `forces: [gravity, collision]`"),
     ("section", "duration end length stop time", "write `clock: {end: 5 s}`: `sceneql words clock`"),
     ("section", "fps framerate frame_rate", "write `clock: {fps: 30}`: `sceneql words clock`"),

@@ -114,6 +114,14 @@ def two_ends(text: str) -> str | None:
     return f"{found[1]} {found[3]} {unit}".strip()
 
 
+def declared(script: str, name: str) -> str | None:
+    """The help for a name whose definition is a comment here: ``#declare R = 0.5;``, ``#define R 0.5``."""
+    found = re.search(rf"^#(?:declare|local|define)\s+{re.escape(name)}\s*=?\s*([^;\n]+)", script, re.MULTILINE)
+    if found is None:
+        return None
+    return f"a line that begins with `#` is a comment: write `define: {{{name}: {found[1].strip()}}}`"
+
+
 def between_times(text: str) -> str | None:
     """The help for two times with the sign of a range between them where a formula says when: ``1 s to 2 s``."""
     ends = (two_ends(text) or "").split()

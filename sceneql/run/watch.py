@@ -12,6 +12,7 @@ import numpy as np
 from sceneql.island.breakpoints import MOST
 from sceneql.kinds import Contact, Interaction, Model, Tie
 from sceneql.quantities.diagnostic import Diagnostic
+from sceneql.run.crossing import Crossing
 from sceneql.run.extremes import watched
 from sceneql.run.falling import falling
 from sceneql.run.invariants import invariants_of
@@ -118,6 +119,7 @@ class Watch:
         self.invariants = [one for island in islands for one in invariants_of(island)]
         self._ringing = [found for island in run.islands if (found := ringing(island)) is not None]
         self._fields = [(island, fields) for island in run.islands if (fields := watched(island))]
+        self._crossing = [Crossing(island) for island in run.islands if island.island.contacts]
         self._falling = [one for island in run.islands for one in falling(island)]
         self._islands, self._painted = run.islands, painted(run.graph)
         self._turning = [
@@ -148,6 +150,10 @@ class Watch:
                 extremes.look(moment.time, island.y)
         for one in self._falling if free else ():
             one.look(moment)
+        for crossing in self._crossing:
+            allowed = AT_LEAST + COST * (time.perf_counter() - self._started)
+            if self.always or self._spent + crossing.cost < allowed:
+                crossing.look(moment)
         for color in self._painted:
             color.look(moment)
         self._spent += time.perf_counter() - started
@@ -173,6 +179,8 @@ class Watch:
         for one in self.invariants:
             found += one.warnings()
         found += [falls.found for falls in self._falling if falls.found is not None]
+        for crossing in self._crossing:
+            found += crossing.warnings()
         for color in self._painted:
             found += color.warnings()
         for balance in self.balances:

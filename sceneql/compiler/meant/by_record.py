@@ -14,7 +14,10 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler.annotations import unwrap
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.meant.chained import swept
 from sceneql.compiler.meant.own_values import in_si
+from sceneql.compiler.meant.under_names import equated
+from sceneql.compiler.meant.unwrapped import unwrapped
 from sceneql.compiler.meant.values_elsewhere import quantities_fitting
 from sceneql.compiler.names import Names
 from sceneql.kinds import Kind
@@ -30,9 +33,10 @@ CONSTANTS = ("params", "parameters", "constants", "args", "coefficients")
 """Fields of other programs for the constants of a system of equations."""
 ANGLES = ("angle", "launch_angle", "elevation", "theta")
 """Fields of other programs for the angle of a throw."""
-_EQUATION = re.compile(r"(?:d\(?(\w+)\)?/dt|(\w+)'|(\w+)_dot)\s*=\s*(.+)")
 SEVERAL = 2
 """Least number of fields that tell the field that they stand in."""
+ANOTHER = "the word says the shape, and its fields stand in it"
+"""Beginning of a help that writes another word in place of the record's."""
 PUSH = "push"
 """Name of a force in examples."""
 SHOWN = 300
@@ -42,13 +46,19 @@ SHOWN = 300
 def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:
     """The help for an unknown field of a record, by its other fields and the parts that it names."""
     known = [kinds.written_name(key) for key in cls.model_fields]
+    sweep = node.entries.get("sweep")
+    if "sweep" in known and isinstance(sweep, Scalar) and (path := swept(reader, node.entries, sweep.text)) is not None:
+        return path
     if not issubclass(cls, kinds.Kind):
         return None
     if issubclass(cls, kinds.Object):
         if name == "scale" and "position" in known:
             word = cls.__module__.rpartition(".")[2]
             return f"write its sizes as they shall be, or let a group scale it: `{in_group(word, node.entries)}`"
-        return balls_of(reader.names, node)
+        if (model := _of_model(reader, name, node.entries[name])) is not None:
+            return model
+        plain = unwrapped(node, cls.family, reader.names.catalogue)
+        return balls_of(reader.names, node) if plain is None else f"{ANOTHER}: write `{plain}`"
     told = _by_names(reader, cls, name, node) or _inside_one(cls, name, node) or _of_force(reader, cls, name, node)
     return told or _of_one(reader, cls, name, node) or _system(known, name, node) or _thrown(known, name, node)
 
@@ -67,10 +77,10 @@ def balls_of(names: Names, node: Node | None) -> str | None:
     return None
 
 
-def judged_as(entry: Entry, family: str, catalogue: Catalogue, names: Names) -> type[Kind] | None:
+def judged_as(entry: Entry, family: str, catalogue: Catalogue, names: Names, help: str) -> type[Kind] | None:
     """The class of the word nearest to an unknown one, whose fields the entry's are judged by; None for none.
 
-    It has to have most of them.
+    It has to have most of them; all of them where the ``help`` for the word writes the entry anew.
     """
     fields, near = entry.fields, nearest(entry.word, words := catalogue.choices(family))
     cls = None if near is None else catalogue.load(family, near)
@@ -81,6 +91,7 @@ def judged_as(entry: Entry, family: str, catalogue: Catalogue, names: Names) -> 
     fits = known.keys() >= fields.entries.keys() and (fields.partial or required <= fields.entries.keys())
     matched = [one for one in (nearest(name, known, STRONG) for name in fields.entries) if one is not None]
     like = nearest(entry.word, words, STRONG) == near and 2 * len(matched) >= len(fields.entries)
+    like = like and "write `{" not in help
     return cls if fits or (like and bool(matched) and required <= {*matched}) else None
 
 
@@ -145,6 +156,21 @@ def _of_one(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str 
     return None
 
 
+def _of_model(reader: Any, name: str, value: Node) -> str | None:
+    """The help for a model's word as a group in the object that it moves: ``Rigidbody: {mass: 2 kg}``."""
+    words = reader.names.catalogue.words("models")
+    word = name if name in words else same_as(name, words)
+    if word is None or not isinstance(value, Mapping) or "." in reader.owner:
+        return None
+    cls = reader.names.catalogue.load("models", word)
+    if cls is None or not {"of", "domain"} & {*cls.model_fields}:
+        return None
+    field = "of" if "of" in cls.model_fields else "domain"
+    fields = "".join(f", {one}: {inner.span.text}" for one, inner in value.entries.items() if one != field)
+    told = f"{{my_{word}: {{{word}: {{{field}: {reader.owner}{fields}}}}}}}"
+    return f"a model is a part of its own, that names the object: write `models: {told}`"
+
+
 def _of_force(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:
     """The help for a force's word, or one that means it, as a field of a model: ``torque: 0 3 0 N*m``.
 
@@ -178,9 +204,8 @@ def _system(known: Collection[str], name: str, node: Mapping) -> str | None:
     if name in CONSTANTS and isinstance(value, Mapping) and "\n" not in value.span.text:
         return f"constants stand at the left margin: write `define: {value.span.text}`"
     items = value.items if isinstance(value, Sequence) else [value]
-    found = [_EQUATION.fullmatch(one.text.strip()) for one in items if isinstance(one, Scalar)]
-    rates = [f"{one[1] or one[2] or one[3]}: {one[4]}" for one in found if one is not None]
-    return f"write `rate: {{{', '.join(rates)}}}`" if rates and len(rates) == len(items) else None
+    rates = equated([one.text for one in items if isinstance(one, Scalar)])
+    return None if rates is None else f"write `rate: {{{rates}}}`"
 
 
 def _thrown(known: Collection[str], name: str, node: Mapping) -> str | None:

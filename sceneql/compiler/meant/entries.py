@@ -11,6 +11,7 @@ from pydantic import BaseModel
 from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.meant.unknown import word_having
+from sceneql.compiler.meant.unwrapped import unwrapped
 from sceneql.kinds import written_name
 from sceneql.language.script import Script
 from sceneql.language.sections import empty
@@ -33,6 +34,10 @@ def improve_entries(script: Script, catalogue: Catalogue, found: Diagnostics) ->
         several = isinstance(node, Mapping) and len(node.entries) > 1
         at = [*node.keys.values()][1].span.start if isinstance(node, Mapping) and several else node.span.start
         k = told.get(at)
+        if k is not None and several and (plain := unwrapped(node, family, catalogue)) is not None:
+            told_anew = f"the word says the shape, and its fields stand in it: write `{name}: {plain}`"
+            found.found[k] = replace(found.found[k], help=told_anew)
+            continue
         if k is None or not any(one in (found.found[k].help or "") for one in UNTOLD):
             continue
         help = _indented(script, family, name, catalogue)

@@ -19,10 +19,12 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler import paint
 from sceneql.compiler.annotations import example_of, first_field, is_fixed, marks_of, quantities, unwrap
-from sceneql.compiler.meant.by_record import by_record
+from sceneql.compiler.meant.by_record import ANOTHER, by_record
+from sceneql.compiler.meant.by_side import part_at_side
 from sceneql.compiler.meant.chained import mended
+from sceneql.compiler.meant.other_parts import for_each_mass, of_contact
 from sceneql.compiler.meant.own_examples import own_example
-from sceneql.compiler.meant.own_values import with_own
+from sceneql.compiler.meant.own_values import in_si, with_own
 from sceneql.compiler.meant.quantity_help import NAME, TRUE, other_output
 from sceneql.compiler.meant.together import together
 from sceneql.compiler.meant.unknown import meant_field
@@ -30,11 +32,12 @@ from sceneql.compiler.meant.values_elsewhere import along_default, quantities_fi
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
-from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, same_as, suggestion
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, suggestion
 from sceneql.quantities.instead import instead
 
 _NAMES = re.compile(rf"{NAME}(?:\s*[-+&|*/,]\s*{NAME})+")
 _MEASURED = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*[^\W\d].*")
+__all__ = ["ANOTHER", "asked", "choice_meant", "example_line", "field_meant", "meant", "wrong_as"]
 OF_FORM = (
     "file-missing",
     "file-outside",
@@ -53,10 +56,10 @@ OF_FORM = (
 """Codes of errors of a value that may be meant for a field though it does not take it so."""
 SHOWN = 60
 """Longest value that a message repeats behind the field that is meant."""
+EITHER = 3
+"""Largest number of fields that a message offers for one value."""
 LAW = "write `{neo_hookean: {modulus: 0 Pa, poisson: 0.45}}`"
 """The usual law of an elastic solid."""
-USUAL_FORCE = "electrostatic"
-"""The word of forces between charges."""
 
 
 def renamed(reader: Any, cls: type[BaseModel], name: str, node: Node) -> tuple[bool, str]:
@@ -154,13 +157,13 @@ def inside(
             before = f"{own[0]}: {value.span.text}, " if isinstance(value, Scalar) and len(own) == 1 else "..., "
             return f"it stands inside `{key}`: write `{key}: {{{before}{name}: {text}}}`"
     if written is not None:
-        return _of_contact(reader, cls, name, text)
+        return of_contact(reader, cls, name, text)
     plain = node.text if isinstance(node, Scalar) else ""
     if issubclass(cls, kinds.Record) and (told := cls.meant_by(plain)) is not None:
         return told
     if (field := taking_word(reader, cls, name)) is not None:
         return f"write `{field}: {{{name}: {text or '{}'}}}`"
-    if (each := _for_each(reader, name)) is not None:
+    if (each := for_each_mass(reader, name)) is not None:
         return each
     found: list[tuple[bool, str]] = []
     for key, info in cls.model_fields.items():
@@ -174,39 +177,6 @@ def inside(
         told = f"it stands outside of these braces: write `{{..., {name}: {text}}}` around them"
         found.append((wrong_as(reader, node, taken, name) is not None, told))
     return min(found, key=lambda one: one[0])[1] if found else None
-
-
-def _for_each(reader: Any, name: str) -> str | None:
-    """The help for a field of listed masses that is a force's, which has one for each: ``charge``."""
-    part, _, path = reader.owner.partition(".")
-    node: Any = reader.names.parts[part].fields if part in reader.names.parts else None
-    for step in path.split(".")[:-1]:
-        node = node.entries.get(step) if isinstance(node, MappingNode) else None
-    items = list(node.entries.values()) if isinstance(node, MappingNode) and path.count(".") else []
-    each = [one.entries[name].span.text for one in items if isinstance(one, MappingNode) and name in one.entries]
-    words = [word for family, word in reader.names.catalogue.having(name) if family == "forces"] if each else []
-    if not words or len(each) < len(items):
-        return None
-    used = [entry.word for entry in reader.names.parts.values() if entry.word in words]
-    word = (used or [one for one in words if one == USUAL_FORCE] or words)[0]
-    told = f"{{{word}: {{{name}: [{', '.join(each)}]}}}}"
-    return f"it is a force's, one for each in their order: write `forces: {{all: {told}}}`"
-
-
-def _of_contact(reader: Any, cls: type[BaseModel], name: str, text: str) -> str | None:
-    """The help for a field of a contact that the script has, in another part: ``restitution`` of a body."""
-    if not issubclass(cls, kinds.Kind) or cls.family not in ("models", "objects") or reader.names.catalogue is None:
-        return None
-    for part, entry in reader.names.parts.items():
-        contact = reader.names.catalogue.load("contacts", entry.word)
-        known = [] if contact is None else [kinds.written_name(key) for key in contact.model_fields]
-        field = same_as(name, known) if cls.family == "models" else name if name in known else None
-        if field is not None:
-            inner = "" if entry.fields is None else "..., "
-            own = f"{part}: " if part != entry.word else ""
-            told = f"{own}{{{entry.word}: {{{inner}{field}: {text}}}}}"
-            return f"'{part}' has it, the contact of the script: write `{told}` there"
-    return None
 
 
 def _is_record(arm: Any) -> bool:
@@ -243,10 +213,13 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         found = required if len(required) == 1 else list(_taking(reader, node, cls))
         if len(found) == 1 and "\n" in node.span.text:
             return f"write `{found[0]}:` in a line of its own above it, and indent it below that"
-        told = " or ".join(f"`{{{name}: {node.span.text}}}`" for name in found)
+        values = {name: (mended(reader, node, cls, name) or (node.span.text,))[0] for name in found}
+        told = " or ".join(f"`{{{name}: {text}}}`" for name, text in values.items())
         return f"write {told}" if 1 <= len(found) <= 2 else None
     if issubclass(cls, kinds.Record) and (meant := cls.meant_by(node.text)) is not None:
         return meant
+    if (side := part_at_side(reader, node, cls)) is not None:
+        return side
     if node.text.lower() in TRUE and not required:
         return "write `{}`: all of its fields have defaults"
     if node.text.lower() in TRUE:
@@ -289,6 +262,11 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     if not fitting and (along := _along(reader, node, cls)) is not None:
         return along
     likely = alone or [kinds.written_name(name) for name in fitting] or _paints(reader, node, cls)
+    if not likely and "components" in cls.model_fields and len(size := in_si(node.text)) in (1, 3):
+        size = size if len(size) > 1 else [0.0, *size, 0.0]
+        return f"write `{{components: [{', '.join(f'{one:g}' for one in size)}]}}`"
+    if 2 <= len(likely) <= EITHER and not alone:
+        return f"write {' or '.join(f'`{{{name}: {node.span.text}}}`' for name in likely)}"
     if len(likely) != 1:
         return None
     text = node.span.text
@@ -298,6 +276,28 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     if text.startswith("-") and above and (why := instead("negative", likely[0])) is not None:
         return f"write `{{{likely[0]}: {text[1:].strip()}}}`: {why}"
     return f"write `{{{likely[0]}: {text}}}`"
+
+
+def value_alone(reader: Any, node: Node, arms: tuple[Any, ...], what: str) -> str | None:
+    """The help for a value under a name of another program where it stands alone: ``initial: {temperature: 300 K}``."""
+    if not isinstance(node, MappingNode) or len(node.entries) != 1:
+        return None
+    (key, inner), records = next(iter(node.entries.items())), [arm for arm in arms if _is_record(arm)]
+    named = any(get_origin(unwrap(arm)[0]) is dict for arm in arms)
+    if named or not records or not isinstance(inner, Scalar) or any(_known(arm, key) is not None for arm in records):
+        return None
+    for arm in arms:
+        if (
+            arm not in records
+            and arm is not type(None)
+            and any(isinstance(mark, kinds.Quantity | kinds.Symbols) for mark in unwrap(arm)[1])
+        ):
+            nothing = Diagnostics()
+            trial = replace(reader, found=nothing, names=replace(reader.names, found=nothing))
+            with suppress(Unreadable):
+                trial.read(inner, arm, what)
+                return f"write `{what}: {inner.span.text}`"
+    return None
 
 
 def _named(reader: Any, node: Scalar, cls: type[BaseModel]) -> str | None:

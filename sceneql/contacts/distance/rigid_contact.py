@@ -50,6 +50,7 @@ def assemble(
     from sceneql.bodies.rigid.tied_step import body_integers, tied_step
     from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS
     from sceneql.contacts.distance import convex, rigid_layout
+    from sceneql.contacts.distance.depths import Overlaps
     from sceneql.contacts.distance.rigid_rows_kernels import PLACE
     from sceneql.contacts.distance.rigid_shapes import Shapes
 
@@ -139,6 +140,12 @@ def assemble(
     ints += [len(joined), *(number for pair in sorted(joined) for number in pair), *names_room]
     ints += [*(number for one in leads for number in one), *skins, *meets]
     assembly.contact("local", (KERNEL,), [int(number) for number in ints], 0)
+    own = [k for k, shape in enumerate(everything) if shape.kind != convex.POINT]
+    moved = [(row[0], row[2]) for row in rows[:r]]
+    stand = [own.index(first) for first, *_ in leads]
+    apart = {(a, own.index(b)) for a, b in joined}
+    begins = [skins[k] for k in own] if skins else []
+    assembly.overlaps.append(Overlaps(real, starts, moved, names, stand, apart, begins, ints, assembly.line()))
     return (*found, loose, crowded)
 
 

@@ -110,6 +110,16 @@ def subtract_product(plan, values, x, r):
     unit, starts, columns = plan[layout.UNIT], plan[layout.STARTS_AT], plan[layout.COLUMNS_AT]
     square = unit * unit
     for row in range(plan[0] // unit):
+        if unit == 3:
+            u, v, w = r[3 * row], r[3 * row + 1], r[3 * row + 2]
+            for place in range(plan[starts + row], plan[starts + row + 1]):
+                column, at = 3 * plan[columns + place], 9 * place
+                p, q, s = x[column], x[column + 1], x[column + 2]
+                u -= values[at] * p + values[at + 1] * q + values[at + 2] * s
+                v -= values[at + 3] * p + values[at + 4] * q + values[at + 5] * s
+                w -= values[at + 6] * p + values[at + 7] * q + values[at + 8] * s
+            r[3 * row], r[3 * row + 1], r[3 * row + 2] = u, v, w
+            continue
         for place in range(plan[starts + row], plan[starts + row + 1]):
             column, at = unit * plan[columns + place], square * place
             for i in range(unit):

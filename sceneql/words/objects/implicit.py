@@ -12,7 +12,6 @@ from pydantic import field_validator
 from sceneql.formulas.balanced import balanced
 from sceneql.formulas.point_formula import in_coordinates, written_out
 from sceneql.kinds import (
-    Axis,
     Clock,
     Doubt,
     FieldBuilder,
@@ -21,6 +20,7 @@ from sceneql.kinds import (
     Formula,
     Moment,
     Problem,
+    Quantity,
     Record,
     Symbols,
 )
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from sceneql import frame
 
 Corner = tuple[float, float, float]
+Place = Annotated[Corner, Quantity(PLAIN, (3,))]
 PLACES = 200
 """Number of points on the default bounds at which a formula is sampled."""
 AXES = tuple(tuple(side * (j == k) for j in range(3)) for k in range(3) for side in (1.0, -1.0))
@@ -58,7 +59,7 @@ class Within(Record):
     )
 
     ball: FixedScalar | None = described("Radius of a ball about the origin.", None, above=0)
-    box: tuple[Axis, Axis] | None = described("Low and high corner of a box.", None)
+    box: tuple[Place, Place] | None = described("Low and high corner of a box.", None)
 
     def problems(self) -> Iterator[Problem]:
         """Two shapes or none, or a box inside out."""
