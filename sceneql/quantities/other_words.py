@@ -89,6 +89,8 @@ _LISTS = (
     ("cells", "resolution segments subdivisions divisions grid nodes points count number"),
     ("cell", "resolution grid grid_size dx spacing"),
     ("size", "depth dimensions dims dimension extent extents resolution res width height length"),
+    ("spread", "cone cone_angle spread_angle half_angle divergence jitter"),
+    ("spacing", "mesh_size element_size grid_size dx"),
     ("size", "sides side edge edge_length"),
     ("radius", "pscale r rad size major major_radius radius1 r1"),
     ("tube", "radius2 r2 tube_radius"),

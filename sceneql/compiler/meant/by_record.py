@@ -16,6 +16,7 @@ from sceneql.compiler.annotations import unwrap
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.meant.chained import swept
 from sceneql.compiler.meant.own_values import in_si
+from sceneql.compiler.meant.under_names import equated
 from sceneql.compiler.meant.unwrapped import unwrapped
 from sceneql.compiler.meant.values_elsewhere import quantities_fitting
 from sceneql.compiler.names import Names
@@ -32,7 +33,6 @@ CONSTANTS = ("params", "parameters", "constants", "args", "coefficients")
 """Fields of other programs for the constants of a system of equations."""
 ANGLES = ("angle", "launch_angle", "elevation", "theta")
 """Fields of other programs for the angle of a throw."""
-_EQUATION = re.compile(r"(?:d\(?(\w+)\)?/dt|(\w+)'|(\w+)_dot)\s*=\s*(.+)")
 SEVERAL = 2
 """Least number of fields that tell the field that they stand in."""
 ANOTHER = "the word says the shape, and its fields stand in it"
@@ -204,9 +204,8 @@ def _system(known: Collection[str], name: str, node: Mapping) -> str | None:
     if name in CONSTANTS and isinstance(value, Mapping) and "\n" not in value.span.text:
         return f"constants stand at the left margin: write `define: {value.span.text}`"
     items = value.items if isinstance(value, Sequence) else [value]
-    found = [_EQUATION.fullmatch(one.text.strip()) for one in items if isinstance(one, Scalar)]
-    rates = [f"{one[1] or one[2] or one[3]}: {one[4]}" for one in found if one is not None]
-    return f"write `rate: {{{', '.join(rates)}}}`" if rates and len(rates) == len(items) else None
+    rates = equated([one.text for one in items if isinstance(one, Scalar)])
+    return None if rates is None else f"write `rate: {{{rates}}}`"
 
 
 def _thrown(known: Collection[str], name: str, node: Mapping) -> str | None:

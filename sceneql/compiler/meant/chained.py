@@ -97,6 +97,11 @@ def better_alone(
     code, help = told[0]
     if code == "out-of-range" and "fixed" in known and help is not None and help == instead("zero", name):
         found[before] = replace(found[before], help=helped.of_fixed(written, name))
+    if name == "color" and "aging" in known and "emit" in written and "`{keys: " in (help or ""):
+        aged = f"write `aging: {{color: {(help or '').split('`')[1]}}}`"
+        found[before] = replace(found[before], help=f"what changes with their age stands there: {aged}")
+    if code == "unknown-choice" and (other := helped.field_of_part(reader, node, written, cls)) is not None:
+        found[before] = replace(found[before], help=other)
     if code == "unknown-name" and helped.is_part(reader, node):
         found[before] = replace(found[before], help=helped.other_output(reader, node, info, name) or help)
     elif code == "unknown-name" and any(mark.direction for mark in quantities(info)) and node.span.text in AXES:

@@ -22,6 +22,8 @@ TIPS, TAILS = ("to", "end", "head", "tip"), ("from", "start", "begin", "origin",
 """Fields of other programs for the ends of an arrow."""
 AWAY = ("distance", "radius", "dist")
 """Fields of other programs for how far a camera stays behind what it follows."""
+LASTING = ("duration", "time", "seconds", "period")
+"""Fields of other programs for how long a motion takes."""
 GRAVITATION = 6.6743e-11
 """[m^3/(kg s^2)] (CODATA 2018)."""
 ABOVE = 0.2
@@ -31,7 +33,7 @@ ABOVE = 0.2
 def worked_out(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
     """The help for an unknown field whose value here follows from what is written."""
     told = _lens(name, node, known) or _cone(name, unknown, node, known) or _arrow(name, unknown, node, known)
-    return told or _followed(name, node, known) or _pulling(name, node, known)
+    return told or _progress(name, node, known) or _followed(name, node, known) or _pulling(name, node, known)
 
 
 def _lens(name: str, node: Mapping, known: Collection[str]) -> str | None:
@@ -86,6 +88,15 @@ def _followed(name: str, node: Mapping, known: Collection[str]) -> str | None:
         return None
     text = f"from: 0 {ABOVE * away[0]:.6g} {away[0]:.6g} m"
     return f"its place as seen from what it follows is `from`: write `{text}`"
+
+
+def _progress(name: str, node: Mapping, known: Collection[str]) -> str | None:
+    """The help for how long a way takes."""
+    text = node.entries[name].span.text
+    if name not in LASTING or not {"along", "progress"} <= {*known} or len(in_si(text)) != 1:
+        return None
+    text = f"({text})" if " " in text else text
+    return f"how far it has come is a part of the way: write `progress: time/{text}`"
 
 
 def _pulling(name: str, node: Mapping, known: Collection[str]) -> str | None:
