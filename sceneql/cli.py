@@ -140,6 +140,7 @@ def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path |
             found.extend(errors_in_variants(scene, sets, words, error.diagnostics) if variant is None else ())
             raise ScriptError(found.found) from None
         found.extend(check_variants(graph, scene, variant, sets, words))
+        found.extend(pipeline.errors_of_layout(graph))
     found.raise_errors()
     _warn(graph)
     click.echo(

@@ -65,6 +65,20 @@ def load(
     return replace(graph, variants=replace(graph.variants, load=of_name, this=variant or ""))
 
 
+def errors_of_layout(graph: SimulationGraph) -> list[Diagnostic]:
+    """The errors that fields alone do not show: those of islands that `check` lays out (Kind.told_by_layout)."""
+    found: list[Diagnostic] = []
+    for island in graph.islands:
+        if any(graph.tasks[name].kind.told_by_layout() for name in island.models):
+            from sceneql.march.assembled import models_of
+
+            made = models_of(graph, island, marched=False)
+            if not made.found.errors:
+                made.act()
+            found += made.found.found
+    return found
+
+
 def simulate(
     graph: SimulationGraph, times: Iterable[float], outputs: Sequence[Output] | None = None
 ) -> Iterator[Instant]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 from sceneql.compiler.css_colors import NAMED, css_color
-from sceneql.compiler.meant.output_help import output_meant
+from sceneql.compiler.meant.output_help import output_alone, output_meant
 from sceneql.kinds import Gives
 from sceneql.language.scope import Broken, Entry, Given, Scope
 from sceneql.language.tree import Node, Scalar, Sequence
@@ -287,6 +287,7 @@ class Names:
             )
         else:
             hint = self._copy_number(wanted) or instead("name", wanted)
+            hint = hint or (output_alone(wanted, self._giving) if len(parts) == 1 < len(wanted) else None)
             hint = hint or suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time", *CONSTANTS])
             model = None if hint else self.model_of(parts[0])
             if model is not None:

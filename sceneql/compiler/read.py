@@ -101,7 +101,7 @@ class Reader:
             helps = [one.help or "" for one in self.found.found[before:]]
             if any(help.startswith(likely.ANOTHER) for help in helps):
                 mistaken |= {*known}
-            mistaken |= (shown := {name for name in known for help in helps if f"`{name}: " in help})
+            mistaken |= (shown := {name for name in known for help in helps if re.search(rf"`\{{?{name}: ", help)})
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)
             if name not in written:
@@ -246,6 +246,8 @@ class Reader:
             raise Unreadable  # which arm was meant is not known
         if all(get_origin(arm) is Literal for arm in fitting):
             return self._choice(node, tuple(choice for arm in fitting for choice in get_args(arm)), what)
+        if (alone := likely.value_alone(self, node, arms, what)) is not None:
+            raise self._fail("wrong-shape", f"{what} takes its value alone", node.span, alone)
         for arm in fitting[:-1]:
             attempt = replace(self, found=Diagnostics())
             attempt = replace(attempt, names=replace(self.names, found=attempt.found))

@@ -234,7 +234,10 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
             "wrong-shape",
             f"{what} is {_shape_text(quantity.shape)}, not {_shape_text(expr.type.shape, expr.type.dimension)}",
             span,
-            help=_repeated(expr, quantity) or _sized(expr, quantity) or _pointed(expr, quantity),
+            help=_repeated(expr, quantity)
+            or _sized(expr, quantity)
+            or _pointed(expr, quantity)
+            or _turning(expr, quantity),
             notes=origin(expr, span),
         )
         return False
@@ -283,6 +286,15 @@ def _repeated(expr: Expr, wanted: Quantity) -> str | None:
         items = [text if k == axis else zero for k in range(size)]
     vector = vector_meant(", ".join(items))
     return None if vector is None else f"write `{vector}`, a number for each axis"
+
+
+def _turning(expr: Expr, wanted: Quantity) -> str | None:
+    """The help where an angle is given for an angular velocity: about y, by time."""
+    has = expr.type.dimension
+    if wanted.shape != (3,) or wanted.dimension != FREQUENCY or not isinstance(expr, Number) or expr.span is None:
+        return None
+    number, _, unit = expr.span.text.partition(" ")
+    return f"it goes by time: write `0 {number} 0 {unit}/s`" if has is not None and has.kind == ANGLE.kind else None
 
 
 def _sized(expr: Expr, wanted: Quantity) -> str | None:

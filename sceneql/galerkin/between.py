@@ -7,11 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sceneql.galerkin.field_mesh import FieldMesh
+from sceneql.galerkin.simplex import Simplex
 from sceneql.grids.maps.kept import Kept
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from sceneql.bodies.elements.element_mesh import ElementMesh
     from sceneql.frame import Floats
-    from sceneql.galerkin.field_mesh import FieldMesh
     from sceneql.grids.medium import FieldLayout
 
 NEAREST = 12
@@ -29,14 +33,23 @@ LEAST = 0.1
 """Fraction of the straight element's Jacobian below which the straight map replaces the curved one."""
 
 
+def within(mesh: ElementMesh, values: Floats) -> Callable[[Floats], Floats]:
+    """The function of places (k, 3) [m] that has ``values`` (n, ...) at the nodes of a solid."""
+    element, count = Simplex(3, 2 if mesh.element.edges else 1), len(mesh.points)
+    own = FieldMesh(element, mesh.points, mesh.cells, mesh.cells, count, (), (), (), (0.0, 0.0))
+    between = BetweenNodes(own, None)
+    return lambda places: between.weights(places)[0] @ values
+
+
 class BetweenNodes:
     """Interpolation of a field on a mesh for pictures (implements grids.medium.Between)."""
 
     what = "nodes"
 
-    def __init__(self, mesh: FieldMesh, layout: FieldLayout) -> None:
-        """``layout``: grid on which pictures sample a deep field."""
-        self.mesh, self.layout, self.count = mesh, layout, mesh.count
+    def __init__(self, mesh: FieldMesh, layout: FieldLayout | None) -> None:
+        """``layout``: grid on which pictures sample a deep field; None where there are no pictures."""
+        self.mesh, self.count = mesh, mesh.count
+        self.layout: Any = layout
         self._weights: Kept[Any] = Kept()
 
     def filled(self, values: Floats) -> Floats:

@@ -243,6 +243,10 @@ class Kind(Record):
         """The dimension of the field to which formulas marked ``of_field`` belong; None: not known."""
         return None
 
+    def told_by_layout(self) -> bool:
+        """Whether `check` lays the island of this model out, for errors that fields alone do not show."""
+        return False
+
     def darkens(self) -> bool:
         """Whether it is shown before the dark, where there is no ground: what shines, or moves in empty space."""
         return False

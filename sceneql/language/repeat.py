@@ -68,6 +68,10 @@ def copy_meant(name: str, known: Collection[str]) -> str | None:
     return f'the number of a copy stands in braces, in quotes: write `"{found[1]}.{{{number}}}"`'
 
 
+_COUNTS, _COUNTERS = ("count", "n", "times", "number", "to", "stop", "end"), ("as", "index", "var", "variable", "name")
+"""Fields of other programs for how many copies there are, and for the name of their number."""
+
+
 def read_repeat(
     node: Node, scope: Scope | None, define: Table[str, Node], lost: Broken, found: Diagnostics, *, names: bool = False
 ) -> Repeat | None:
@@ -83,7 +87,12 @@ def read_repeat(
         given = node.text if isinstance(node, Scalar) and node.kind in ("integer", "text") else "5"
         if (loop := _RANGE.search(given)) is not None:
             given = loop[1]
-        help = f"write `repeat: {{count: {given}, as: i}}`"
+        counter = "i"
+        if isinstance(node, Mapping):
+            told = {key: one.text for key, one in node.entries.items() if isinstance(one, Scalar)}
+            given = next((told[key] for key in _COUNTS if told.get(key, "").isdecimal()), given)
+            counter = next((told[key] for key in _COUNTERS if told.get(key, "").isidentifier()), counter)
+        help = f"write `repeat: {{count: {given}, as: {counter}}}`"
         if isinstance(node, Sequence):
             help = (
                 "all are one count: write `repeat: {count: 9, as: k}`, and `mod(k, 3)` and `floor(k/3)` in its fields"

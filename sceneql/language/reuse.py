@@ -96,6 +96,10 @@ class _Section:
             return None
         if not isinstance(used, Scalar) or used.kind != "text":
             help = "write `name: {use: other, field: value}`"
+            fields = next(iter(used.entries.values()), None) if isinstance(used, Mapping) else None
+            if isinstance(used, Mapping) and len(used.entries) == 1 and isinstance(fields, Mapping):
+                inner = "".join(f", {name}: {one.span.text}" for name, one in fields.entries.items())
+                help = f"write `{{use: {next(iter(used.entries))}{inner}}}`"
             self.found.error("entry-shape", "`use` takes the name of a part", used.span, help=help)
             return None
         if used.text in seen:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import cast
+from typing import Any, cast
 
 from sceneql.bodies.bodies import diagonal
 from sceneql.doing import doing
@@ -99,6 +99,26 @@ class Assembled:
                 yield
             except ScriptError as error:
                 self.found.extend(error.diagnostics)
+
+    def places(self, link: Link) -> Any:
+        """Indices into the state of an output of one of the models (Model.places), for values read at stage times."""
+        state = self._at_start(link.task)
+        return None if state is None else cast(Model, self.graph.tasks[link.task].kind).places(link.output, state)
+
+    def points(self, link: Link) -> Any:
+        """The bodies of a link to a position, the number of one, and the point on it (Model.point), for forces."""
+        state = self._at_start(link.task)
+        if state is None or state.bodies is None:
+            return None
+        found = cast(Model, self.graph.tasks[link.task].kind).point(link.output, state)
+        return None if found is None else (state.bodies, *found)
+
+    def _at_start(self, name: str) -> ModelState | None:
+        """The state of one of the models at the start; None for other parts, or before it is assembled."""
+        if name not in self.bodies:
+            return None
+        start, ints = self.assembly.start(), self.assembly.remembered(name)
+        return ModelState(0.0, start, start, self.assembly.numbers(), self.bodies[name], ints)
 
     def facts(self) -> IslandFacts:
         """The facts by which a solver chooses its methods; call it once forces and contacts are added."""
@@ -204,11 +224,12 @@ class Assembled:
                 kind.assemble_carried(contact, self.assembly, skins, carried, everyone, touched)
 
 
-def models_of(graph: SimulationGraph, island: Island) -> Assembled:
-    """An island with its models, without forces and contacts yet."""
+def models_of(graph: SimulationGraph, island: Island, marched: bool = True) -> Assembled:
+    """An island with its models, without forces and contacts yet; ``marched``: as in Assembly."""
     made = Assembled(graph, island, IslandAssembly(Setting(graph.tasks, graph.settings.clock.end)))
     stepper = cast(Solver, graph.tasks[island.solver].kind).stepper()
     made.assembly.by_tolerance = stepper.control.adaptive and not (stepper.needs.jacobian or stepper.needs.march)
+    made.assembly.marched = marched
     setting = made.assembly.setting
     for name in sorted(island.models, key=lambda name: setting.carrier(name) is not None):
         with made.word(name), doing(f"making {name}"):
@@ -216,6 +237,7 @@ def models_of(graph: SimulationGraph, island: Island) -> Assembled:
     for name in island.models:
         with made.word(name):
             cast(Model, graph.tasks[name].kind).connect(name, made.assembly)
+    made.assembly.places, made.assembly.points = made.places, made.points
     return made
 
 

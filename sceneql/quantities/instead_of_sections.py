@@ -63,6 +63,24 @@ OF_SECTIONS = (
         "a flow has one density; of warm or salty fluid that it carries some is lighter by its `buoyancy`: `buoyancy:"
         " {by: heat.temperature, expansion: 3.4e-3 1/K, reference: 300 K}`",
     ),
+    (
+        "field.cloth",
+        "density area_density surface_density weight grammage",
+        "its mass is that of a square meter: `mass: 0.2 kg/m^2`",
+    ),
+    ("field.clock", "start begin t0 from", "time begins at 0 s: leave it out"),
+    (
+        "field.particles",
+        "grid lattice rows columns nx ny nz",
+        "on a grid stand those that fill an object: `fill: {object: {box: {size: 1 1 1 m, hidden: yes}}, spacing: 10"
+        " cm}`",
+    ),
+    ("field.membrane", "flow fluid in", "it is in the flow around it: leave it out"),
+    (
+        "field.elastic",
+        "resolution cells divisions n subdivisions segments",
+        "how far its nodes are apart says how many there are: `spacing: 5 cm`",
+    ),
     ("field.gear", "ratio gear_ratio transmission", "its teeth say it: a ratio of 2 is `teeth: 40 20`"),
     (
         "field.streamlines",

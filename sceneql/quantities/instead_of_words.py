@@ -37,6 +37,7 @@ OF_PARTS = (
         "lines have their names, `y: {height: ball.position.y}`, and a graph its `title`",
     ),
     ("field.outputs", "frames count number", "the clock tells how many there are: `clock: {end: 4 s, fps: 30}`"),
+    ("field.outputs", "times", "an `image` has one `time`; others are outputs of their own, `images` every frame"),
     ("field.outputs", "frame frame_number", "write its time: frame 12 of 30 a second is `time: 0.4 s`"),
     ("field.outputs", "codec bitrate container", "a film is MP4, H.264: `quality: 17` says how large it gets"),
     ("field.lights", "position", "it has a direction, from the scene towards it: `direction: 1 2 1`"),
@@ -365,7 +366,7 @@ OF_PARTS = (
     ),
     ("field.forces", "mass", "write its `strength`, G times the mass: `6.67e-11*1e10 m^3/s^2`"),
     ("objects", "indexedfaceset faces triangles polygons vertices", "a file has them: `{mesh: {file: cow.obj}}`"),
-    ("objects", "text title label caption", "text stands in `overlays: {title: {caption: {text: ...}}}`"),
+    ("objects", "text title label caption", "text stands in `overlays: {title: {caption: {text: <text|hello>}}}`"),
     (
         "forces contacts ties lights overlays",
         "none null off no nothing",

@@ -10,12 +10,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, fields
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import LimitRefused, RunFailure, Unsuitable
 from sceneql.files import whole
 from sceneql.graph import SimulationGraph
+from sceneql.kinds import Solver
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.report.bench_grids import GridSection, grid_section
 from sceneql.report.bench_surfaces import Section, surface_section
@@ -75,6 +76,11 @@ def bench(
         if not applying:
             lines.append(f"{title}: none of {', '.join(chosen)} applies")
             continue
+        if cast(Solver, graph.tasks[island.solver].kind).static:
+            word = graph.tasks[island.solver].word
+            lines.append(f"{title}: {word} finds rests, and takes no steps in time whose lengths could be compared")
+            summary.append(lines[-1])
+            continue
         truth = reference(graph, island, catalogue)
         lines.append(f"{title}: errors against {truth.because} (itself good to {truth.uncertainty:.0e})")
         summary.append(lines[-1])
@@ -94,7 +100,7 @@ def bench(
         named = cheapest_lines([row for row in rows if row.island == title], truth, asked)
         lines += named
         summary += named
-    if graph.islands:
+    if rows:
         lines.append(f"compiled in {compile_seconds:.1f} s, which is in none of the times")
         summary.append(lines[-1])
     section = surface_section(frames, graph.name, stem) if frames else None
@@ -186,7 +192,7 @@ def _write(
     files: list[Path] = []
     plots: list[tuple[str, Path]] = []
     tables: list[Table] = []
-    if graph.islands:
+    if rows:
         _write_csv(table, rows, orders)
         error_against_time(time, graph.name, rows, orders)
         error_against_step(step, graph.name, rows, orders, graph.settings.clock.end)

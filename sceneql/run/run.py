@@ -15,7 +15,6 @@ from sceneql.failure import GivesWay, LimitRefused, RunFailure
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Interaction, Model, Object, Solver, Tie, Value
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
-from sceneql.quantities.expression import Link
 from sceneql.run.diverging import Diverged
 from sceneql.run.dry_run import DryRun, asked, dry_run
 from sceneql.run.grounded import grounded
@@ -200,7 +199,6 @@ class IslandRun:
         made.assembly.went_on = went_on
         self.bodies = made.bodies
         self.assembly = made.assembly
-        self.assembly.places, self.assembly.points = self._places, self._points
         if not self.assembly.fields and not island.contacts:  # the solver's step is known before forces are added
             compile_beside((solver.stepper().method.step.partition(":")[0],))
         made.act()
@@ -292,28 +290,6 @@ class IslandRun:
             before=before,
             kept=kept,
         )
-
-    def _places(self, link: Link) -> Any:
-        """Indices into the state of an output of one of the models (Model.places), for values read at stage times."""
-        state = self._at_start(link.task)
-        return None if state is None else cast(Model, self.graph.tasks[link.task].kind).places(link.output, state)
-
-    def _points(self, link: Link) -> Any:
-        """The bodies of a link to a position, the number of one, and the point on it (Model.point), for forces."""
-        state = self._at_start(link.task)
-        if state is None or state.bodies is None:
-            return None
-        found = cast(Model, self.graph.tasks[link.task].kind).point(link.output, state)
-        return None if found is None else (state.bodies, *found)
-
-    def _at_start(self, name: str) -> ModelState | None:
-        """The state of one of the models at the start; None for other parts, or before it is assembled."""
-        from sceneql.system import ModelState
-
-        if name not in self.bodies:
-            return None
-        start, ints = self.assembly.start(), self.assembly.remembered(name)
-        return ModelState(0.0, start, start, self.assembly.numbers(), self.bodies[name], ints)
 
     def advance(self, time: float) -> None:
         """March to an instant [s]. Raises RunFailure."""

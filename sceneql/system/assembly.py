@@ -222,8 +222,11 @@ class Assembly(Protocol):
     def start(self) -> Any:
         """The state reserved so far (n,), at the start of the run."""
 
-    def numbers(self) -> Any:
-        """The floats stored so far, with values that vary in time as they are at the start."""
+    def numbers(self, first: int = 0, last: int | None = None) -> Any:
+        """The floats stored so far, or those from ``first`` to before ``last``: a copy.
+
+        Values that vary in time are as at the start.
+        """
 
     def line(self) -> Span | None:
         """The place in the script of the word that is being assembled."""
@@ -252,6 +255,9 @@ class Assembly(Protocol):
     the island is then assembled anew and goes on from that instant."""
     by_tolerance: bool
     """Whether the solver is explicit with adaptive steps."""
+    marched: bool
+    """Whether the island is to be marched; else `check` asks for errors alone, and numbers that do not tell any may be
+    left as they are."""
     overlaps: list[Any]
     """What measures in a run how deep rigid bodies are in one another (contacts/distance/depths.py)."""
     contact_why: str

@@ -71,6 +71,11 @@ class Block(Record):
         """Shortest side [m] of the cells of a block with a `size`; 0 for one with `corners`."""
         return min(s / n for s, n in zip(self.size, self.cells, strict=True)) if self.size is not None else 0.0
 
+    def mean_side(self) -> float:
+        """Mean side [m] of its cells: the cube root of the bounding box's volume over their number."""
+        low, high = self.box()
+        return float((prod(b - a for a, b in zip(low, high, strict=True)) / prod(self.cells)) ** (1 / 3))
+
     def made(self) -> tuple[Floats, Ints]:
         """Points (n, 3) [m] and tetrahedra (t, 4), of positive volume where the corners are in their order."""
         import numpy as np

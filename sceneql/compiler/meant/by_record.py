@@ -14,7 +14,9 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler.annotations import unwrap
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.meant.chained import swept
 from sceneql.compiler.meant.own_values import in_si
+from sceneql.compiler.meant.under_names import equated
 from sceneql.compiler.meant.unwrapped import unwrapped
 from sceneql.compiler.meant.values_elsewhere import quantities_fitting
 from sceneql.compiler.names import Names
@@ -31,7 +33,6 @@ CONSTANTS = ("params", "parameters", "constants", "args", "coefficients")
 """Fields of other programs for the constants of a system of equations."""
 ANGLES = ("angle", "launch_angle", "elevation", "theta")
 """Fields of other programs for the angle of a throw."""
-_EQUATION = re.compile(r"(?:d\(?(\w+)\)?/dt|(\w+)'|(\w+)_dot)\s*=\s*(.+)")
 SEVERAL = 2
 """Least number of fields that tell the field that they stand in."""
 ANOTHER = "the word says the shape, and its fields stand in it"
@@ -45,6 +46,9 @@ SHOWN = 300
 def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:
     """The help for an unknown field of a record, by its other fields and the parts that it names."""
     known = [kinds.written_name(key) for key in cls.model_fields]
+    sweep = node.entries.get("sweep")
+    if "sweep" in known and isinstance(sweep, Scalar) and (path := swept(reader, node.entries, sweep.text)) is not None:
+        return path
     if not issubclass(cls, kinds.Kind):
         return None
     if issubclass(cls, kinds.Object):
@@ -200,9 +204,8 @@ def _system(known: Collection[str], name: str, node: Mapping) -> str | None:
     if name in CONSTANTS and isinstance(value, Mapping) and "\n" not in value.span.text:
         return f"constants stand at the left margin: write `define: {value.span.text}`"
     items = value.items if isinstance(value, Sequence) else [value]
-    found = [_EQUATION.fullmatch(one.text.strip()) for one in items if isinstance(one, Scalar)]
-    rates = [f"{one[1] or one[2] or one[3]}: {one[4]}" for one in found if one is not None]
-    return f"write `rate: {{{', '.join(rates)}}}`" if rates and len(rates) == len(items) else None
+    rates = equated([one.text for one in items if isinstance(one, Scalar)])
+    return None if rates is None else f"write `rate: {{{rates}}}`"
 
 
 def _thrown(known: Collection[str], name: str, node: Mapping) -> str | None:

@@ -97,6 +97,11 @@ def better_alone(
     code, help = told[0]
     if code == "out-of-range" and "fixed" in known and help is not None and help == instead("zero", name):
         found[before] = replace(found[before], help=helped.of_fixed(written, name))
+    if name == "color" and "aging" in known and "emit" in written and "`{keys: " in (help or ""):
+        aged = f"write `aging: {{color: {(help or '').split('`')[1]}}}`"
+        found[before] = replace(found[before], help=f"what changes with their age stands there: {aged}")
+    if code == "unknown-choice" and (other := helped.field_of_part(reader, node, written, cls)) is not None:
+        found[before] = replace(found[before], help=other)
     if code == "unknown-name" and helped.is_part(reader, node):
         found[before] = replace(found[before], help=helped.other_output(reader, node, info, name) or help)
     elif code == "unknown-name" and any(mark.direction for mark in quantities(info)) and node.span.text in AXES:
@@ -106,7 +111,7 @@ def better_alone(
     elif code in ("unknown-name", "unknown-unit"):
         found[before] = replace(found[before], help=helped.number_meant(node, info, name, code, help) or help)
     if name == "sweep" and code == "wrong-shape" and isinstance(node, Scalar):
-        found[before] = replace(found[before], help=_swept(reader, written, node.text) or help)
+        found[before] = replace(found[before], help=swept(reader, written, node.text) or help)
     if code == "unknown-unit" and (frames := _FRAMES.fullmatch(node.span.text.strip())) is not None:
         rate = written["fps"].span.text if "fps" in written else str(helped.FRAMES)
         if rate.replace(".", "", 1).isdecimal() and float(rate) > 0:
@@ -180,12 +185,14 @@ def _behind(written: Naming[str, Node], name: str) -> list[str]:
     return found
 
 
-def _swept(reader: Any, written: Naming[str, Node], what: str) -> str | None:
+def swept(reader: Any, written: Naming[str, Node], what: str) -> str | None:
     """The help for a study's sweep that names what is varied, without its path: a define, or a solver's step."""
     values = next((one.span.text for key, one in written.items() if key in ("values", "range", "over")), "[..., ...]")
     parts = reader.names.parts.items()
     steps = [part for part, entry in parts if isinstance(entry.fields, Mapping) and "step" in entry.fields.entries]
+    having = [part for part, entry in parts if isinstance(entry.fields, Mapping) and what in entry.fields.entries]
     path = f"define.{what}" if what in reader.names.defines else what if "." in what else ""
+    path = path or (f"{having[0]}.{what}" if len(having) == 1 else "")
     path = path or (f"{steps[0]}.step" if steps and same_as(what, ["step"]) is not None else "")
     return f"what is varied stands by its path: write `sweep: {{{path}: {values}}}`" if path else None
 

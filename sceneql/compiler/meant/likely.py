@@ -24,7 +24,7 @@ from sceneql.compiler.meant.by_side import part_at_side
 from sceneql.compiler.meant.chained import mended
 from sceneql.compiler.meant.other_parts import for_each_mass, of_contact
 from sceneql.compiler.meant.own_examples import own_example
-from sceneql.compiler.meant.own_values import with_own
+from sceneql.compiler.meant.own_values import in_si, with_own
 from sceneql.compiler.meant.quantity_help import NAME, TRUE, other_output
 from sceneql.compiler.meant.together import together
 from sceneql.compiler.meant.unknown import meant_field
@@ -56,6 +56,8 @@ OF_FORM = (
 """Codes of errors of a value that may be meant for a field though it does not take it so."""
 SHOWN = 60
 """Longest value that a message repeats behind the field that is meant."""
+EITHER = 3
+"""Largest number of fields that a message offers for one value."""
 LAW = "write `{neo_hookean: {modulus: 0 Pa, poisson: 0.45}}`"
 """The usual law of an elastic solid."""
 
@@ -211,7 +213,8 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         found = required if len(required) == 1 else list(_taking(reader, node, cls))
         if len(found) == 1 and "\n" in node.span.text:
             return f"write `{found[0]}:` in a line of its own above it, and indent it below that"
-        told = " or ".join(f"`{{{name}: {node.span.text}}}`" for name in found)
+        values = {name: (mended(reader, node, cls, name) or (node.span.text,))[0] for name in found}
+        told = " or ".join(f"`{{{name}: {text}}}`" for name, text in values.items())
         return f"write {told}" if 1 <= len(found) <= 2 else None
     if issubclass(cls, kinds.Record) and (meant := cls.meant_by(node.text)) is not None:
         return meant
@@ -259,6 +262,11 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     if not fitting and (along := _along(reader, node, cls)) is not None:
         return along
     likely = alone or [kinds.written_name(name) for name in fitting] or _paints(reader, node, cls)
+    if not likely and "components" in cls.model_fields and len(size := in_si(node.text)) in (1, 3):
+        size = size if len(size) > 1 else [0.0, *size, 0.0]
+        return f"write `{{components: [{', '.join(f'{one:g}' for one in size)}]}}`"
+    if 2 <= len(likely) <= EITHER and not alone:
+        return f"write {' or '.join(f'`{{{name}: {node.span.text}}}`' for name in likely)}"
     if len(likely) != 1:
         return None
     text = node.span.text
@@ -268,6 +276,28 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     if text.startswith("-") and above and (why := instead("negative", likely[0])) is not None:
         return f"write `{{{likely[0]}: {text[1:].strip()}}}`: {why}"
     return f"write `{{{likely[0]}: {text}}}`"
+
+
+def value_alone(reader: Any, node: Node, arms: tuple[Any, ...], what: str) -> str | None:
+    """The help for a value under a name of another program where it stands alone: ``initial: {temperature: 300 K}``."""
+    if not isinstance(node, MappingNode) or len(node.entries) != 1:
+        return None
+    (key, inner), records = next(iter(node.entries.items())), [arm for arm in arms if _is_record(arm)]
+    named = any(get_origin(unwrap(arm)[0]) is dict for arm in arms)
+    if named or not records or not isinstance(inner, Scalar) or any(_known(arm, key) is not None for arm in records):
+        return None
+    for arm in arms:
+        if (
+            arm not in records
+            and arm is not type(None)
+            and any(isinstance(mark, kinds.Quantity | kinds.Symbols) for mark in unwrap(arm)[1])
+        ):
+            nothing = Diagnostics()
+            trial = replace(reader, found=nothing, names=replace(reader.names, found=nothing))
+            with suppress(Unreadable):
+                trial.read(inner, arm, what)
+                return f"write `{what}: {inner.span.text}`"
+    return None
 
 
 def _named(reader: Any, node: Scalar, cls: type[BaseModel]) -> str | None:

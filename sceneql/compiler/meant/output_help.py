@@ -21,6 +21,17 @@ TURNS = ("angle", "theta", "phi", "rotation", "turn", "angles")
 """Names of the angle by which something is turned."""
 
 
+def output_alone(wanted: str, giving: Callable[[str], Collection[str]]) -> str | None:
+    """The help for a height or a speed without the part that it is of: that of the first part with a place."""
+    name = wanted.lower()
+    output = "position" if name in COORDINATES else "velocity" if name in SPEEDS else ""
+    part = next(iter(giving(output)), None) if output else None
+    if part is None:
+        return None
+    value = f"{part}.position.{COORDINATES[name]}" if output == "position" else f"length({part}.velocity)"
+    return f"a value is named with its part: write `{value}`"
+
+
 def output_meant(
     part: str, wanted: str, outputs: Collection[str], giving: Callable[[str], Collection[str]]
 ) -> str | None:

@@ -12,6 +12,8 @@ from sceneql.quantities.span import Source, Span
 
 _NUMBER = r"-?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?"
 _EXAMPLE = re.compile(rf"(\w+): ({_NUMBER}(?: {_NUMBER})*(?: ?(?:[^\W\d]|/|%)[\w^*/·()-]*?)?)(?=[,}}`\]])")
+_QUANTITY = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?) ?([^\W\d]\w*)?")
+_ITEM = re.compile(r"\s+(?=[-+.\d])")
 _SHOWN = re.compile(r"`[^`]*`")
 UNSURE = ("size", "width", "diameter", "extent")
 """Names whose value is not the one that an example by a name that means the same shows: a diameter is two radii."""
@@ -44,6 +46,16 @@ def with_own(help: str, name: str, text: str) -> str:
     start, end = fits[0].span(2)
     down = text.startswith("-") and own[0] == () and not fits[0][2].startswith("-")  # what pulls has no minus
     return help[:start] + (text[1:].strip() if down else text) + help[end:]
+
+
+def numbers_with_unit(text: str) -> tuple[list[float], str] | None:
+    """Plain numbers of one unit, ``""`` if none is written, side by side, in brackets or not; else None."""
+    items = [one for part in text.replace("[", " ").replace("]", " ").split(",") for one in _ITEM.split(part) if one]
+    parts = [_QUANTITY.fullmatch(" ".join(item.split())) for item in items]
+    units = [part[2] or "" for part in parts if part is not None]
+    if not parts or None in parts or (any(units[:-1]) and len({*units}) > 1):
+        return None
+    return [float(part[1]) for part in parts if part is not None], units[-1]
 
 
 def _halved(text: str) -> str:

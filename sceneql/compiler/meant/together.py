@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Collection
 from collections.abc import Sequence as Sequenced
-from math import atan, degrees
 
-from sceneql.compiler.meant.own_values import in_si
+from sceneql.compiler.meant.own_values import in_si, numbers_with_unit
+from sceneql.compiler.meant.worked_out import worked_out
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import same_as
 from sceneql.quantities.literal import vector_meant
@@ -16,8 +16,6 @@ _FIRST = re.compile(r"\{(\w+): [<\[]")
 _BLANK = re.compile(r"<(\w+)(#?)\|([^>]*)>")
 CELLS = ("cells", "resolution", "grid", "n", "divisions", "nodes", "points")
 """Fields of other programs for a number of cells."""
-_QUANTITY = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?) ?([^\W\d]\w*)?")
-_ITEM = re.compile(r"\s+(?=[-+.\d])")
 _RATE = re.compile(r"d\(?(\w+)\)?\s*/\s*dt")
 CORNERS = (
     ("corner1", "corner2"), ("min", "max"), ("low", "high"), ("from", "to"), ("p1", "p2"), ("start", "end"),
@@ -34,15 +32,6 @@ KEYED = ("curve", "cycle", "delay", "then")
 """Fields of keyframes."""
 SLOW = ("slowmo", "slowmotion", "slowdown", "slow")
 STRENGTHS = ("value", "strength", "magnitude", "torque", "force", "size", "amount", "moment")
-LENSES, FILM = ("focal_length", "lens", "focallength"), 24.0
-"""Fields of other programs for a lens, and the height of its film [mm]."""
-CONE = (
-    ("radius_top", "top_radius", "radiustop", "r2"),
-    ("radius_bottom", "bottom_radius", "radiusbottom", "r1"),
-)
-"""Fields of other programs for a cone's radii at the top and at the bottom."""
-THIN = 0.01
-"""Factor of a taper to a point."""
 TYPES = ("type", "kind", "model", "name")
 """Fields by which other programs tell which of several groups the others are in."""
 WAYS = ("axis", "direction", "about", "dir")
@@ -65,7 +54,7 @@ def together(name: str, unknown: Sequenced[str], node: Mapping, known: Collectio
     told = told or _corners(name, unknown, node, known) or _members(name, unknown, node, known)
     told = told or _states(name, unknown, node, known) or _slower(name, node, known)
     told = told or _along(name, unknown, node, known) or _shown(name, unknown, node, known)
-    told = told or _typed(name, unknown, node, known) or _lens(name, node, known) or _cone(name, unknown, node, known)
+    told = told or _typed(name, unknown, node, known) or worked_out(name, unknown, node, known)
     told = told or _of_keys(name, node) or _drag(name, unknown, node, known) or _two_places(name, node, known)
     if told is not None:
         return told
@@ -154,20 +143,10 @@ def _by_cells(name: str, node: Mapping, known: Collection[str]) -> str | None:
     size = node.entries.get("size")
     if "cell" not in known or "cell" in node.entries or name not in CELLS or size is None:
         return None
-    counts, sides = _numbers(node.entries[name].span.text), _numbers(size.span.text)
+    counts, sides = numbers_with_unit(node.entries[name].span.text), numbers_with_unit(size.span.text)
     if counts is None or sides is None or counts[0][0] <= 0.0 or not sides[1]:
         return None
     return f"it has the size of a cell: write `cell: {sides[0][0] / counts[0][0]:.6g} {sides[1]}`"
-
-
-def _numbers(text: str) -> tuple[list[float], str] | None:
-    """Plain numbers of one unit, ``""`` if none is written, side by side, in brackets or not; else None."""
-    items = [one for part in text.replace("[", " ").replace("]", " ").split(",") for one in _ITEM.split(part) if one]
-    parts = [_QUANTITY.fullmatch(" ".join(item.split())) for item in items]
-    units = [part[2] or "" for part in parts if part is not None]
-    if not parts or None in parts or (any(units[:-1]) and len({*units}) > 1):
-        return None
-    return [float(part[1]) for part in parts if part is not None], units[-1]
 
 
 def _corners(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
@@ -175,7 +154,7 @@ def _corners(name: str, unknown: Sequenced[str], node: Mapping, known: Collectio
     pair = next((pair for pair in CORNERS if name in pair and {*pair} <= {*unknown}), None)
     if pair is None or not {"size", "position"} <= {*known} or "size" in node.entries:
         return None
-    both = [_numbers(node.entries[one].span.text) for one in pair]
+    both = [numbers_with_unit(node.entries[one].span.text) for one in pair]
     if both[0] is None or both[1] is None:
         return "it has a size and the place of its middle: write `size: ...` and `position: ...`"
     (low, unit), (high, other) = both[0], both[1]
@@ -283,28 +262,3 @@ def _typed(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[
         return None
     inner = ", ".join(f"{one}: {node.entries[one].span.text}" for one in unknown if one != told)
     return f"its fields stand inside of its name: write `{{{node.entries[told].span.text}: {{{inner}}}}}`"
-
-
-def _lens(name: str, node: Mapping, known: Collection[str]) -> str | None:
-    """The help for a focal length in place of an angle of view, in a camera whose picture is 24 mm high."""
-    length = _numbers(node.entries[name].span.text)
-    if name not in LENSES or "field_of_view" not in known or length is None or length[1] not in ("", "mm"):
-        return None
-    if length[0][0] <= 0.0:
-        return None
-    angle = degrees(2.0 * atan(FILM / 2.0 / length[0][0]))
-    return f"a lens of {length[0][0]:g} mm sees, upright, `field_of_view: {angle:.3g} deg`: write that"
-
-
-def _cone(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
-    """The help for the two radii of a cone beside the fields of a cylinder."""
-    top, bottom = (next((one for one in unknown if one.lower() in ends), None) for ends in CONE)
-    if top is None or bottom is None or name not in (top, bottom) or "radius" in node.entries:
-        return None
-    upper, lower = (_numbers(node.entries[one].span.text) for one in (top, bottom))
-    if upper is None or lower is None or upper[1] != lower[1] or lower[0][0] <= 0.0:
-        return None
-    rest = "".join(f", {one}: {value.span.text}" for one, value in node.entries.items() if one in known)
-    inner = f"{{cylinder: {{radius: {node.entries[bottom].span.text}{rest}}}}}"
-    factor = max(upper[0][0] / lower[0][0], THIN)
-    return f"a cone is a cylinder that is tapered: write `{{taper: {{of: {inner}, factor: {factor:.3g}}}}}`"

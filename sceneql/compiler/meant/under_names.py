@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 from typing import Any
 
@@ -11,8 +12,10 @@ from sceneql import kinds
 from sceneql.compiler.annotations import first_field
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence
+from sceneql.quantities.diagnostic import same_as
 from sceneql.quantities.instead import instead
 
+EQUATION = re.compile(r"(?:d\(?(\w+)\)?/dt|(\w+)'|(\w+)_dot)\s*=\s*(.+)")
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 NAMES = ("name", "id")
 """Fields by which other programs name the items of a list."""
@@ -23,13 +26,28 @@ def listed(node: MappingNode, item: Any, what: str) -> str | None:
     if not (isinstance(item, type) and issubclass(item, BaseModel)) or not node.entries:
         return None
     known = [kinds.written_name(name) for name in item.model_fields]
-    if not all(isinstance(one, MappingNode) and one.entries.keys() & set(known) for one in node.entries.values()):
+    inner = [one for one in node.entries.values() if isinstance(one, MappingNode)]
+    if len(inner) < len(node.entries) or not all(_ours(key, known) for one in inner for key in one.entries):
         return None
     if node.entries.keys() & set(known):
         return None
-    named = "name" in known
-    items = (f"name: {name}, {_inside(one)}" if named else _inside(one) for name, one in node.entries.items())
+    named, of = "name" in known, dict(zip(node.entries, inner, strict=True))
+    items = (f"name: {name}, {_as_ours(one, known)}" if named else _as_ours(one, known) for name, one in of.items())
     return f"it is a list: write `{what}: [{', '.join(f'{{{one}}}' for one in items)}]`"
+
+
+def _ours(key: str, known: Collection[str]) -> str | None:
+    """The field that a key is, by another name too."""
+    return key if key in known else same_as(key, known)
+
+
+def _as_ours(node: MappingNode, known: Collection[str]) -> str:
+    """The fields of an item by their names here; what is one here, as two ends, in a list."""
+    told: dict[str, list[str]] = {}
+    for key, value in node.entries.items():
+        told.setdefault(_ours(key, known) or key, []).append(value.span.text)
+    texts = {key: f"[{', '.join(each)}]" if len(each) > 1 else each[0] for key, each in told.items()}
+    return ", ".join(f"{key}: {text}" for key, text in texts.items())
 
 
 def by_name(node: Node, item: Any, parts: bool) -> str:
@@ -53,6 +71,12 @@ def by_name(node: Node, item: Any, parts: bool) -> str:
     texts = [f"{name}: {{{_inside(one, NAMES)}}}" for one in items if (name := _name_in(one))]
     if record and items and len(texts) == len(items):
         return f"write `{{{', '.join(texts)}}}`, the name of each before its fields"
+    if record and items and all(isinstance(one, MappingNode) for one in items) and not sided:
+        told = ", ".join(f"{name}: {one.span.text}" for name, one in zip(LETTERS, items, strict=False))
+        if "\n" not in told and len(items) <= len(LETTERS):
+            return f"each has a name of its own: write `{{{told}}}`"
+    if not record and (rates := equated([one.span.text for one in items or [node]])) is not None:
+        return f"write `{{{rates}}}`"
     if not record and len(items) > 1 and all(isinstance(one, Scalar) for one in items):
         names = [one.span.text.rpartition(".")[2] for one in items]
         own = names if len({*names}) == len(items) and all(map(str.isidentifier, names)) else [*LETTERS]
@@ -61,9 +85,19 @@ def by_name(node: Node, item: Any, parts: bool) -> str:
     first = items[0].span.text if items else "name"
     first = first if first.isidentifier() else "name"
     example = first_field(item) if record else "..."
+    if not record and not items and isinstance(node, Scalar) and "." in node.text:
+        first, example = node.text.rpartition(".")[2], node.text
     if record and "of" in item.model_fields and first != "name":
         example = f"{{of: {first}}}"
     return f"write `{{{first}: {example}}}`, each entry under a name of its own"
+
+
+def equated(texts: Collection[str]) -> str | None:
+    """Equations as a book writes them, ``x' = v``, as names with values; None of other texts."""
+    pieces = [one.strip() for text in texts for one in re.split(r"[,;]\s+", text.strip("'\"")) if one.strip()]
+    found = [EQUATION.fullmatch(one) for one in pieces]
+    told = [f"{one[1] or one[2] or one[3]}: {one[4]}" for one in found if one is not None]
+    return ", ".join(told) if told and len(told) == len(pieces) else None
 
 
 def _name_in(node: Node) -> str:

@@ -233,6 +233,20 @@ class Diffusion(SpreadingMedium):
         cells = self.model_copy(update={"method": "cells", "element": None})
         return {"cells": cells, **{one: self.model_copy(update={**given, "element": one}) for one in ("p1", "p2")}}
 
+    def spaced(self) -> float:
+        """Side of its cells [m]."""
+        return self.cell
+
+    def resized(self, part: float) -> Diffusion:
+        """Itself with cells of a part of their size."""
+        return self.model_copy(update={"cell": part * self.cell})
+
+    def along(self, name: str, state: ModelState) -> tuple[int, Any]:
+        """How many unknowns its field has, and the function of places (k, 3) [m] that it is."""
+        between = self.between(self.layout(state), state)
+        held = between.filled(self.read(_names(self.of)[0], state))
+        return between.count, lambda places: between.at(held, places)
+
     def samples(self, state: ModelState) -> tuple[Any, Any, Any]:
         """Places (k, 3) [m], the field there (k,), and the volumes (k,) [m^3] that these stand for."""
         if self._solved is not None:

@@ -21,6 +21,7 @@ from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
 from sceneql.bodies.filling.block import Block
 from sceneql.bodies.filling.finer import Finer
 from sceneql.bodies.solid_modes import Bent
+from sceneql.galerkin.resized import Resized
 from sceneql.kinds import Clock, Doubt, Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, TooCoarse, field
 from sceneql.kinds.probed import HeldPart, Probed
 from sceneql.kinds.stable_step import Oscillation, StaticScene
@@ -70,7 +71,7 @@ class Made:
     """(n,) bool: nodes that holds without a motion keep in place."""
 
 
-class Elastic(Model):
+class Elastic(Resized, Model):
     """A solid of finite elements: density x'' = div P + forces, P the stress of its strain by its law (Cauchy 1827).
 
     It is an object filled with tetrahedra, a `block`, or of a `file`. Its nodes are masses, on which forces and
@@ -393,8 +394,7 @@ class Elastic(Model):
         from sceneql.bodies.elements import skin
         from sceneql.bodies.spring_look import plates
 
-        assert state.bodies is not None
         assert self._made is not None
-        surface, places = moment.surface(name, self.material, self.color), masses.positions(state.bodies, state)
+        surface, places = moment.surface(name, self.material, self.color), self.read("positions", state)
         yield self.skin.drawn(name, surface, places)
         yield from plates(name, places, self._made.glued, skin.triangles(self.solid.mesh))

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 THICKEST = 1e100
 """Largest viscosity [Pa s]: its products with lengths do not overflow."""
+MOST_LAID_OUT = {2: 300_000, 3: 60_000}
+"""Most cells of a 2D or 3D flow that `check` lays out."""
 FIELDS = ("speed", "vorticity", "pressure")
 AT_ONCE = ("auto", "fast_transform", "direct")
 """Solvers of the pressure without a history of residuals."""
@@ -71,7 +73,7 @@ class Flow(Model):
     """Fields among its outputs that are of both signs."""
 
     said_by: ClassVar = {
-        "reynolds": "write the viscosity that it makes, density times speed times length over it"
+        "reynolds": "it is density times speed times length over viscosity: `viscosity: 1 kg/m^3*1 m/s*1 m/100`"
     } | dict.fromkeys(
         ("inlet", "outlet", "inflow", "outflow", "walls", "wall", "sides", "boundaries"),
         'sides are told by `boundary: {left: {inflow: {velocity: "[1, 0]"}}, right: {outflow: {}}}`; others are walls',
@@ -325,6 +327,13 @@ class Flow(Model):
     def layout(self, state: ModelState, output: str) -> FieldLayout:
         """Where the values at centers lie, for pictures."""
         return layout_of(0, state.ints[:5], state.floats)
+
+    def told_by_layout(self) -> bool:
+        """Unless it has very many cells: how solids cut them, and what flows in and out, shows then."""
+        if self.size is None:
+            return True
+        shape = counts(self.size, self.cell)
+        return bool(shape[0] * shape[1] * shape[2] <= MOST_LAID_OUT[len(self.size)])
 
     def shows(self, name: str) -> Value | None:
         """Its speed."""

@@ -1,0 +1,107 @@
+"""Help for fields of other programs whose value here is worked out: a lens, a cone, an arrow from place to place."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from collections.abc import Sequence as Sequenced
+from math import atan, degrees
+
+from sceneql.compiler.meant.own_values import in_si, numbers_with_unit
+from sceneql.language.tree import Mapping
+
+LENSES, FILM = ("focal_length", "lens", "focallength"), 24.0
+"""Fields of other programs for a lens, and the height of its film [mm]."""
+CONE = (
+    ("radius_top", "top_radius", "radiustop", "r2"),
+    ("radius_bottom", "bottom_radius", "radiusbottom", "r1"),
+)
+"""Fields of other programs for a cone's radii at the top and at the bottom."""
+THIN = 0.01
+"""Factor of a taper to a point."""
+TIPS, TAILS = ("to", "end", "head", "tip"), ("from", "start", "begin", "origin", "tail", "at")
+"""Fields of other programs for the ends of an arrow."""
+AWAY = ("distance", "radius", "dist")
+"""Fields of other programs for how far a camera stays behind what it follows."""
+LASTING = ("duration", "time", "seconds", "period")
+"""Fields of other programs for how long a motion takes."""
+GRAVITATION = 6.6743e-11
+"""[m^3/(kg s^2)] (CODATA 2018)."""
+ABOVE = 0.2
+"""How much higher than what it follows a camera stands, in parts of its distance."""
+
+
+def worked_out(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for an unknown field whose value here follows from what is written."""
+    told = _lens(name, node, known) or _cone(name, unknown, node, known) or _arrow(name, unknown, node, known)
+    return told or _progress(name, node, known) or _followed(name, node, known) or _pulling(name, node, known)
+
+
+def _lens(name: str, node: Mapping, known: Collection[str]) -> str | None:
+    """The help for a focal length in place of an angle of view, in a camera whose picture is 24 mm high."""
+    length = numbers_with_unit(node.entries[name].span.text)
+    if name not in LENSES or "field_of_view" not in known or length is None or length[1] not in ("", "mm"):
+        return None
+    if length[0][0] <= 0.0:
+        return None
+    angle = degrees(2.0 * atan(FILM / 2.0 / length[0][0]))
+    return f"a lens of {length[0][0]:g} mm sees, upright, `field_of_view: {angle:.3g} deg`: write that"
+
+
+def _cone(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for the two radii of a cone beside the fields of a cylinder."""
+    top, bottom = (next((one for one in unknown if one.lower() in ends), None) for ends in CONE)
+    if top is None or bottom is None or name not in (top, bottom) or "radius" in node.entries:
+        return None
+    upper, lower = (numbers_with_unit(node.entries[one].span.text) for one in (top, bottom))
+    if upper is None or lower is None or upper[1] != lower[1] or lower[0][0] <= 0.0:
+        return None
+    rest = "".join(f", {one}: {value.span.text}" for one, value in node.entries.items() if one in known)
+    inner = f"{{cylinder: {{radius: {node.entries[bottom].span.text}{rest}}}}}"
+    factor = max(upper[0][0] / lower[0][0], THIN)
+    return f"a cone is a cylinder that is tapered: write `{{taper: {{of: {inner}, factor: {factor:.3g}}}}}`"
+
+
+def _arrow(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for the two ends of an arrow, which has one and a vector."""
+    if not {"at", "vector"} <= {*known} or "vector" in node.entries or name not in (*TIPS, *TAILS):
+        return None
+    tip, tail = (next((one for one in ends if one in node.entries), None) for ends in (TIPS, TAILS))
+    if tip is None or tail is None:
+        return None
+    first, last = node.entries[tail].span.text, node.entries[tip].span.text
+    ends = [numbers_with_unit(text) for text in (first, last)]
+    vector = f"{last} - {first}"
+    if ends[0] is not None and ends[1] is not None and len(ends[0][0]) == len(ends[1][0]):
+        if ends[0][1] != ends[1][1]:
+            return None
+        vector = " ".join(f"{b - a:.6g}" for a, b in zip(ends[0][0], ends[1][0], strict=True))
+        vector = f"{vector} {ends[0][1]}".rstrip()
+    elif not all(text.replace(".", "_").isidentifier() for text in (first, last)):
+        return None
+    return f"it goes from `at` by a vector: write `at: {first}, vector: {vector}`"
+
+
+def _followed(name: str, node: Mapping, known: Collection[str]) -> str | None:
+    """The help for how far a camera stays behind what it follows."""
+    away = in_si(node.entries[name].span.text)
+    if name not in AWAY or not {"follow", "from"} <= {*known} or "follow" not in node.entries or len(away) != 1:
+        return None
+    text = f"from: 0 {ABOVE * away[0]:.6g} {away[0]:.6g} m"
+    return f"its place as seen from what it follows is `from`: write `{text}`"
+
+
+def _progress(name: str, node: Mapping, known: Collection[str]) -> str | None:
+    """The help for how long a way takes."""
+    text = node.entries[name].span.text
+    if name not in LASTING or not {"along", "progress"} <= {*known} or len(in_si(text)) != 1:
+        return None
+    text = f"({text})" if " " in text else text
+    return f"how far it has come is a part of the way: write `progress: time/{text}`"
+
+
+def _pulling(name: str, node: Mapping, known: Collection[str]) -> str | None:
+    """The help for a mass that pulls, of which the strength is told."""
+    mass = in_si(node.entries[name].span.text)
+    if name.lower() not in ("mass", "m") or {"strength", "position"} - {*known} or len(mass) != 1:
+        return None
+    return f"its strength is G times the mass: write `strength: {GRAVITATION * mass[0]:.6g} m^3/s^2`"
