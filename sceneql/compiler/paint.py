@@ -12,6 +12,7 @@ from sceneql.compiler.css_colors import NAMED, css_color
 from sceneql.compiler.keyframes import read_keys
 from sceneql.compiler.names import Names
 from sceneql.compiler.values import parsed_text, read_expr, read_value, time_reader
+from sceneql.compiler.vector_fields import ENDS
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure
@@ -68,7 +69,11 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
     if isinstance(node, MappingNode) and not set(node.entries) <= {*AXES}:
         texts = re.findall(r"[a-z]+", node.span.text)
         first = next((one for one in texts if one in NAMED), "skyblue")
-        found.error("wrong-shape", "color is one color, not a group of fields", node.span, help=f"write `{first}`")
+        ends = [one.span.text for one in node.entries.values()]
+        better = f"write `{first}`"
+        if len(ends) == len(ENDS) and all(key in names for key, names in zip(node.entries, ENDS, strict=True)):
+            better = f"what changes has keys: write `{{keys: {{0 s: {ends[0]}, 1 s: {ends[1]}}}}}`"
+        found.error("wrong-shape", "color is one color, not a group of fields", node.span, help=better)
         return None
     value = read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
     _of_names(found, before)

@@ -101,7 +101,7 @@ class Reader:
             helps = [one.help or "" for one in self.found.found[before:]]
             if any(help.startswith(likely.ANOTHER) for help in helps):
                 mistaken |= {*known}
-            mistaken |= (shown := {name for name in known for help in helps if f"`{name}: " in help})
+            mistaken |= (shown := {name for name in known for help in helps if re.search(rf"`\{{?{name}: ", help)})
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)
             if name not in written:

@@ -23,6 +23,7 @@ _TEX = re.compile(r"\$([^${}]*[\\^_=][^$]*)\$")
 """A formula of TeX between dollar signs."""
 LONGEST_TEX = 500
 """Longest text in which a formula is looked for."""
+_DOLLAR = re.compile(r"\$([^\W\d]\w*)")
 _SIGN = re.compile(r"\$(\{[^{}]*\})")
 _LINK = re.compile(r"[^\W\d]\w*(?:\.\w+)+")
 PIECE = re.compile(r"\{\{|\}\}|\{(?P<inside>[^{}]*)\}|(?P<odd>[{}])")
@@ -82,6 +83,11 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
     if (sign := _SIGN.search(text)) is not None:
         help = f"values stand in braces alone: write `{sign[1]}`"
         found.error("syntax", "a '$' before braces would be drawn as it stands", node.span, help=help)
+        return None
+    if (bare := _DOLLAR.search(text)) is not None and (bare[1] == "time" or bare[1] in names.defines):
+        shown = ":.1f s" if bare[1] == "time" else ""
+        help = f"a text has its values in braces: write `{{{bare[1]}{shown}}}`"
+        found.error("syntax", f"'{bare[0]}' would be drawn as it stands", node.span, help=help)
         return None
     ok = ok and not _twice(pieces, node.span, found)
     return Text(tuple(one for one in pieces if one)) if ok else None

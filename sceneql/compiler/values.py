@@ -21,6 +21,7 @@ from sceneql.quantities.dimension import (
     FORCE,
     FREQUENCY,
     LENGTH,
+    MASS,
     PERCENTAGE,
     PLAIN,
     TIME,
@@ -38,6 +39,8 @@ from sceneql.quantities.units import describe, in_words, unit_of
 
 PLAIN_NUMBER = Quantity(PLAIN)
 COMPONENTS = ("x", "y", "z")
+_SIZES = (None, PLAIN, LENGTH, MASS * LENGTH**2)
+"""Dimensions of vectors that have a size along each axis."""
 _AXES: dict[Dimension | None, int] = {LENGTH / TIME: 0, FREQUENCY: 1, FORCE: 1}
 SHORTEST, LONGEST = 1e-100, 1e100
 """Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
@@ -234,7 +237,10 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
             "wrong-shape",
             f"{what} is {_shape_text(quantity.shape)}, not {_shape_text(expr.type.shape, expr.type.dimension)}",
             span,
-            help=_repeated(expr, quantity) or _sized(expr, quantity) or _pointed(expr, quantity),
+            help=_repeated(expr, quantity)
+            or _sized(expr, quantity)
+            or _pointed(expr, quantity)
+            or _turning(expr, quantity),
             notes=origin(expr, span),
         )
         return False
@@ -278,11 +284,21 @@ def _repeated(expr: Expr, wanted: Quantity) -> str | None:
         zero = "0" if wanted.dimension is None or wanted.dimension.plain else f"0 {unit_of(wanted.dimension)}"
         return f"write `[{', '.join([text, *(size - 1) * [zero]])}]`, a value for each axis"
     items = size * [text]
-    if size == 3 and (axis := _AXES.get(expr.type.dimension)) is not None:  # of these a direction is meant
+    if size == 3 and expr.type.dimension not in _SIZES:  # of others a direction is meant
+        axis = _AXES.get(expr.type.dimension, 1)
         zero = re.sub(r"^[-+.\d]+(e[-+]?\d+)?", "0", text)
         items = [text if k == axis else zero for k in range(size)]
     vector = vector_meant(", ".join(items))
     return None if vector is None else f"write `{vector}`, a number for each axis"
+
+
+def _turning(expr: Expr, wanted: Quantity) -> str | None:
+    """The help where an angle is given for an angular velocity: about y, by time."""
+    has = expr.type.dimension
+    if wanted.shape != (3,) or wanted.dimension != FREQUENCY or not isinstance(expr, Number) or expr.span is None:
+        return None
+    number, _, unit = expr.span.text.partition(" ")
+    return f"it goes by time: write `0 {number} 0 {unit}/s`" if has is not None and has.kind == ANGLE.kind else None
 
 
 def _sized(expr: Expr, wanted: Quantity) -> str | None:

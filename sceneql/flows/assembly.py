@@ -111,7 +111,7 @@ class _Builder:
             given = given | shut
             x[shut] = passage.walls[shut]
             pushes = pushes * passage.fills + passage.gains / volumes
-            weights = assembly.numbers()[edges[1] : edges[1] + len(edge_faces)]
+            weights = assembly.numbers(edges[1], edges[1] + len(edge_faces))
             assembly.write(edges[1], weights * passage.edges[edge_faces])
         inflows = [part for part, _ in self.parts if part.inflow is not None]
         if inflows:
@@ -151,7 +151,7 @@ class _Builder:
         fractions = None if self.solids is None else self.solids.fractions(areas)
         if self.moving is not None:
             self.moving.describe(ints)
-            edge_weights = assembly.numbers()[edges[1] : edges[1] + len(edge_faces)]
+            edge_weights = assembly.numbers(edges[1], edges[1] + len(edge_faces))
             held = int(plan[SINK]) if len(plan) else -1
             weighed = (base, strengths, edge_weights, sinks, solved)
             known = Known(uncut, given, outside, *weighed, self.model.density, self.viscosity, held)
@@ -364,7 +364,7 @@ class _Builder:
         """
         faces, assembly = self.faces, self.assembly
         sink = np.zeros(faces.count)
-        weights = assembly.numbers()[weights_at : weights_at + len(edge_faces)]
+        weights = assembly.numbers(weights_at, weights_at + len(edge_faces))
         np.add.at(sink, np.array(edge_faces, dtype=np.int64), weights)
         sink += friction
         sinks, solved = assembly.floats(sink), assembly.floats(np.where(given, 0.0, volumes))

@@ -57,7 +57,7 @@ def carry(model: SpreadingMedium, drift: Drift, fields: Sequence[tuple[Grid, Bou
     strength = assembly.floats([1.0])
     first = flow.components[0].at
     areas = [flow.ints[AREAS] + one.at - first for one in flow.components]
-    opened = assembly.numbers()[flow.ints[AREAS] :]
+    opened = assembly.numbers(flow.ints[AREAS])
     faces = Faces(cells, periodic)
     n = len(cells.volumes)
     flows = [assembly.floats(np.zeros(n)) for _ in flow.areas]
@@ -229,7 +229,7 @@ def field_in(by: Value, flow: Flow, name: str, assembly: Assembly) -> Grid:
     if grid is None:
         text = f"'{link.task}.{link.output}' is no field on a grid that is solved with the flow"
         raise ScriptError([Diagnostic("no-field", text, by.span, "name one of a `diffusion`")])
-    box = assembly.numbers()[grid.cells.box_at : grid.cells.box_at + 6]
+    box = assembly.numbers(grid.cells.box_at, grid.cells.box_at + 6)
     _must_agree(grid.cells.shape, box[:3], box[3:], grid.cells.periodic, flow, name, by.span)
     return grid
 

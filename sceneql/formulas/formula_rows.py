@@ -134,7 +134,8 @@ class Rows:
         known = self.states
         for state in known:
             if state not in self.start:
-                yield Problem(f"{state} has a rate but no value at the start", ("rate", self.row_of(state)))
+                text = f"{state} has a rate but no value at the start"
+                yield Problem(text, ("rate", self.row_of(state)), help=f"write `{state}: 0` in `start`, or what it is")
         for name in self.start:
             if name not in known:
                 hint = suggestion(name, known)

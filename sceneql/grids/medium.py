@@ -308,7 +308,7 @@ class Medium(Model):
 
     def must_hold_probes(self, layout: FieldLayout, assembly: Assembly) -> None:
         """Raise ScriptError for a probe that lies in no cell of the domain."""
-        volumes = assembly.numbers()[layout.volumes_at : layout.volumes_at + layout.count]
+        volumes = assembly.numbers(layout.volumes_at, layout.volumes_at + layout.count)
         for name, place in self.probes.items():
             cell = layout.cell(place)
             if cell < 0 or not volumes[cell] > 0.0:

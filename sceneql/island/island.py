@@ -326,7 +326,7 @@ class IslandAssembly(Offered):
         if slopes is not None and (self._local or self._limits):
             floats[channels.STAGE] = channels.OUTSIDE if newton else channels.BETWEEN
         else:
-            self._numbers = [floats[: self._stored]]  # shared, not copied: each march writes to its own copy
+            self._share(floats)
 
         def grown(floats: Floats) -> System | None:
             more = [grow(floats) for grow in self._growing]

@@ -44,6 +44,7 @@ class Reserved:
     _pairs: list[tuple[int, int, int]] = field(init=False, default_factory=list)
     _numbers: list[Floats] = field(init=False, default_factory=lambda: [np.zeros(channels.HEAD)])
     _stored: int = field(init=False, default=channels.HEAD)
+    _room: Floats = field(init=False, default_factory=lambda: np.zeros(0))
     _rests: list[tuple[int, Floats]] = field(init=False, default_factory=list)
     _matrices: dict[int, Any] = field(init=False, default_factory=dict)
     """Mass matrices by the offset of the velocities, and matrices of `capacity` by that of their entries."""
@@ -127,7 +128,9 @@ class Reserved:
 
     def write(self, at: int, values: Any) -> None:
         """Overwrite stored numbers (system.Assembly)."""
-        numbers = self.numbers()
+        numbers = self._joined()
+        if not numbers.flags.writeable:  # it belongs to an island that is laid out already
+            numbers = numbers.copy()
         numbers[at : at + len(values)] = values
         self._numbers = [numbers]
 
@@ -145,8 +148,23 @@ class Reserved:
         """The state reserved so far, at the start of the run."""
         return np.concatenate(self._starts) if self._starts else np.zeros(0)
 
-    def numbers(self) -> Floats:
-        """The floats stored so far."""
-        if len(self._numbers) > 1:  # joined here: many words ask, each after storing a few more
-            self._numbers = [np.concatenate(self._numbers)]
-        return self._numbers[0].copy()
+    def numbers(self, first: int = 0, last: int | None = None) -> Floats:
+        """The floats stored so far, or those from ``first`` to before ``last``: a copy."""
+        return self._joined()[first:last].copy()
+
+    def _share(self, floats: Floats) -> None:
+        """Keep the floats of an island that is laid out, without a copy: each march writes to its own."""
+        self._numbers = [floats[: self._stored]]
+        self._numbers[0].flags.writeable = False
+
+    def _joined(self) -> Floats:
+        """The floats stored so far, in one array with room for more: many words ask, each after storing a few."""
+        joined, *later = self._numbers
+        if not later:
+            return joined
+        if len(self._room) < self._stored or joined.base is not self._room:
+            self._room = np.empty(self._stored + self._stored // 2)
+            self._room[: len(joined)] = joined
+        np.concatenate(later, out=self._room[len(joined) : self._stored])
+        self._numbers = [self._room[: self._stored]]
+        return self._numbers[0]

@@ -26,7 +26,7 @@ MOST_READ = 600
 
 
 FEW = range(5)
-"""Lengths of lists that are evaluated anew instead of kept, which is as fast; vectors and quaternions have these."""
+"""Lengths of lists of which everybody gets a copy; vectors and quaternions have these."""
 
 
 class Checked:
@@ -51,6 +51,8 @@ class Value(Checked):
     """Cache: the symbols of time, links and whole-run operations in the expression; None until first asked for."""
     _list: Any = field(default=None, init=False, repr=False, compare=False)
     """Cache of ``fixed_list``."""
+    _few: Any = field(default=None, init=False, repr=False, compare=False)
+    """Cache of ``fixed``: a number, or an array of few."""
 
     @property
     def constant(self) -> bool:
@@ -81,6 +83,17 @@ class Value(Checked):
 
             object.__setattr__(self, "_list", held(evaluate(self.expr, {}.__getitem__, arrays=True)))
         return self._list
+
+    def fixed(self) -> Any:
+        """The float or array of a constant value, evaluated once: a long list as ``fixed_list``; None for others."""
+        if self._few is None:
+            shape = self.expr.type.shape
+            if len(shape) > 0 and shape[0] not in FEW:
+                return self.fixed_list()
+            if not self.constant:
+                return None
+            object.__setattr__(self, "_few", evaluate(self.expr, {}.__getitem__, arrays=True))
+        return self._few if isinstance(self._few, float) else self._few.copy()
 
     def number(self) -> Any:
         """The float, or nested tuple of floats, of a constant value, in SI."""

@@ -47,7 +47,7 @@ OF_FORMULAS = (
     ),
     (
         "function",
-        "ddt dt derivative deriv diff integral integrate",
+        "d ddt dt derivative deriv diff integral integrate",
         "there is none: velocities are outputs, `fall.velocity`, and states of an `equations` model have a `rate`",
     ),
     (
@@ -139,6 +139,19 @@ OF_FORMULAS = (
     ),
     ("name", "about", "an axis is a field: `rotation: {about: z, angle: 30 deg}`"),
     ("name", "water", "water has a density of `1000 kg/m^3`, and a viscosity of `1e-3 Pa*s`"),
+    ("name", "steel iron", "steel has a density of `7850 kg/m^3`, iron `7870 kg/m^3`"),
+    ("name", "wood ice", "wood has a density of about `600 kg/m^3`, ice `917 kg/m^3`"),
+    (
+        "name",
+        "aluminium aluminum concrete stone rock",
+        "aluminium has a density of `2700 kg/m^3`, concrete `2400 kg/m^3`",
+    ),
+    (
+        "name",
+        "gold silver lead copper",
+        "gold has a density of `19300 kg/m^3`, lead `11340 kg/m^3`, copper `8960 kg/m^3`",
+    ),
+    ("name", "rubber plastic", "rubber has a density of `1100 kg/m^3`, plastic about `1000 kg/m^3`"),
     ("name", "air", "air has a density of `1.2 kg/m^3`, and a viscosity of `1.8e-5 Pa*s`"),
     (
         "unit",

@@ -69,6 +69,29 @@ OF_SECTIONS = (
         "its mass is that of a square meter: `mass: 0.2 kg/m^2`",
     ),
     ("field.clock", "start begin t0 from", "time begins at 0 s: leave it out"),
+    (
+        "field.particles",
+        "grid lattice rows columns nx ny nz",
+        "on a grid stand those that fill an object: `fill: {object: {box: {size: 1 1 1 m, hidden: yes}}, spacing: 10"
+        " cm}`",
+    ),
+    ("field.membrane", "flow fluid in", "it is in the flow around it: leave it out"),
+    (
+        "field.elastic",
+        "resolution cells divisions n subdivisions segments",
+        "how far its nodes are apart says how many there are: `spacing: 5 cm`",
+    ),
+    (
+        "field.turbulence",
+        "strength amplitude intensity amount magnitude power",
+        "how fast it blows is its `speed: 2 m/s`",
+    ),
+    ("field.turbulence", "scale frequency noise_scale wavelength", "how large its eddies are is their `size: 0.5 m`"),
+    (
+        "place.iso_surface",
+        "of",
+        "the surface of a formula is `implicit`, where that is 0: write `{implicit: {field: x^2 + y^2 + z^2 - 1}}`",
+    ),
     ("field.gear", "ratio gear_ratio transmission", "its teeth say it: a ratio of 2 is `teeth: 40 20`"),
     (
         "field.streamlines",

@@ -101,7 +101,7 @@ class Instant:
 
     def at(self, value: Value) -> Any:
         """The value now: float or float64 array, SI. Raises RunFailure if it is not finite."""
-        known = value.fixed_list()
+        known = value.fixed()
         now = self._evaluate(value.expr) if known is None else known
         if not np.isfinite(now).all():
             raise RunFailure("a value is not finite now", part="", time=self.now, span=value.span)

@@ -48,7 +48,7 @@ def immerse_masses(flow: Flow, bodies: Bodies, peskin: bool, assembly: Assembly)
     assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
     if flow.varying:
         at = flow.varying[fluid_layout.FASTEST]
-        assembly.write(at, np.array([max(fastest(flow, bodies, ints, assembly), assembly.numbers()[at])]))
+        assembly.write(at, np.array([max(fastest(flow, bodies, ints, assembly), *assembly.numbers(at, at + 1))]))
 
 
 def fastest(flow: Flow, bodies: Bodies, ints: Sequence[int], assembly: Assembly) -> float:

@@ -222,8 +222,11 @@ class Assembly(Protocol):
     def start(self) -> Any:
         """The state reserved so far (n,), at the start of the run."""
 
-    def numbers(self) -> Any:
-        """The floats stored so far, with values that vary in time as they are at the start."""
+    def numbers(self, first: int = 0, last: int | None = None) -> Any:
+        """The floats stored so far, or those from ``first`` to before ``last``: a copy.
+
+        Values that vary in time are as at the start.
+        """
 
     def line(self) -> Span | None:
         """The place in the script of the word that is being assembled."""

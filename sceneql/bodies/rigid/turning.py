@@ -25,7 +25,7 @@ def reserve(assembly: Assembly, bodies: Bodies, rotations: Floats, spins: Floats
     from sceneql.system import Slopes, Turning
 
     n = bodies.count
-    moving = assembly.numbers()[bodies.inverse_at : bodies.inverse_at + n] > 0
+    moving = assembly.numbers(bodies.inverse_at, bodies.inverse_at + n) > 0
     momenta, inverses, principal = np.zeros((n, 3)), np.zeros((n, 6)), np.zeros((n, 7))
     for k in np.flatnonzero(moving).tolist():
         turn = rotation_matrix(rotations[k])

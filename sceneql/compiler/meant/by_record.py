@@ -16,6 +16,7 @@ from sceneql.compiler.annotations import unwrap
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.meant.chained import swept
 from sceneql.compiler.meant.own_values import in_si
+from sceneql.compiler.meant.under_names import equated
 from sceneql.compiler.meant.unwrapped import unwrapped
 from sceneql.compiler.meant.values_elsewhere import quantities_fitting
 from sceneql.compiler.names import Names
@@ -32,7 +33,6 @@ CONSTANTS = ("params", "parameters", "constants", "args", "coefficients")
 """Fields of other programs for the constants of a system of equations."""
 ANGLES = ("angle", "launch_angle", "elevation", "theta")
 """Fields of other programs for the angle of a throw."""
-_EQUATION = re.compile(r"(?:d\(?(\w+)\)?/dt|(\w+)'|(\w+)_dot)\s*=\s*(.+)")
 SEVERAL = 2
 """Least number of fields that tell the field that they stand in."""
 ANOTHER = "the word says the shape, and its fields stand in it"
@@ -57,6 +57,8 @@ def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> st
             return f"write its sizes as they shall be, or let a group scale it: `{in_group(word, node.entries)}`"
         if (model := _of_model(reader, name, node.entries[name])) is not None:
             return model
+        if (around := _around(reader, cls, name, node)) is not None:
+            return around
         plain = unwrapped(node, cls.family, reader.names.catalogue)
         return balls_of(reader.names, node) if plain is None else f"{ANOTHER}: write `{plain}`"
     told = _by_names(reader, cls, name, node) or _inside_one(cls, name, node) or _of_force(reader, cls, name, node)
@@ -171,6 +173,21 @@ def _of_model(reader: Any, name: str, value: Node) -> str | None:
     return f"a model is a part of its own, that names the object: write `models: {told}`"
 
 
+def _around(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:
+    """The help for an object's word that takes another one, as a field of that: ``twist: 90 deg`` of a box."""
+    word, value = cls.__module__.rpartition(".")[2], node.entries[name]
+    other = reader.names.catalogue.load("objects", name)
+    if other is None or "of" not in other.model_fields or not isinstance(value, Scalar):
+        return None
+    fields = list(quantities_fitting(reader, value, other.model_fields))
+    rest = ", ".join(f"{key}: {one.span.text}" for key, one in node.entries.items() if key != name)
+    if not fields or "\n" in rest or len(rest) > SHOWN:
+        return None
+    inner = f"{{{word}: {{{rest}}}}}"
+    told = f"{{{name}: {{of: {inner}, {kinds.written_name(fields[0])}: {value.span.text}}}}}"
+    return f"it is an object around another: write `{told}`"
+
+
 def _of_force(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:
     """The help for a force's word, or one that means it, as a field of a model: ``torque: 0 3 0 N*m``.
 
@@ -204,9 +221,8 @@ def _system(known: Collection[str], name: str, node: Mapping) -> str | None:
     if name in CONSTANTS and isinstance(value, Mapping) and "\n" not in value.span.text:
         return f"constants stand at the left margin: write `define: {value.span.text}`"
     items = value.items if isinstance(value, Sequence) else [value]
-    found = [_EQUATION.fullmatch(one.text.strip()) for one in items if isinstance(one, Scalar)]
-    rates = [f"{one[1] or one[2] or one[3]}: {one[4]}" for one in found if one is not None]
-    return f"write `rate: {{{', '.join(rates)}}}`" if rates and len(rates) == len(items) else None
+    rates = equated([one.text for one in items if isinstance(one, Scalar)])
+    return None if rates is None else f"write `rate: {{{rates}}}`"
 
 
 def _thrown(known: Collection[str], name: str, node: Mapping) -> str | None:

@@ -12,6 +12,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from sceneql import kinds
+from sceneql.compiler.meant.values_elsewhere import quantities_fitting
 from sceneql.compiler.passes.fillings import Beginning
 from sceneql.compiler.passes.overlaps import UNKNOWN
 from sceneql.compiler.problems import Unreadable
@@ -41,9 +42,20 @@ def parts_at_sides(reader: Any, node: Node, item: Any, what: str) -> str | None:
     names = [one.text for one in items if isinstance(one, Scalar)]
     told = [(name, _formula(reader, name)) for name in names]
     if not told or any(formula is None for _, formula in told):
-        return None
+        return _at_end(reader, node, item, what)
     inner = ", ".join(f"{name}: {{where: {formula}}}" for name, formula in told)
     return f"write `{what}: {{{inner}}}`"
+
+
+def _at_end(reader: Any, node: Node, item: Any, what: str) -> str | None:
+    """The help for one value in place of parts of a solid that have it: at the right end, ``loads: 0 -5 0 N``."""
+    fitting = quantities_fitting(reader, node, item.model_fields) if isinstance(node, Scalar) else {}
+    formula = _formula(reader, "right") if len(fitting) == 1 else None
+    if formula is None:
+        return None
+    field = kinds.written_name(next(iter(fitting)))
+    inner = f"{{right: {{where: {formula}, {field}: {node.span.text}}}}}"
+    return f"it is told with its place: write `{what}: {inner}`, or where else it is"
 
 
 def _told_by_place(cls: Any) -> bool:

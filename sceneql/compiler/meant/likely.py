@@ -213,7 +213,8 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         found = required if len(required) == 1 else list(_taking(reader, node, cls))
         if len(found) == 1 and "\n" in node.span.text:
             return f"write `{found[0]}:` in a line of its own above it, and indent it below that"
-        told = " or ".join(f"`{{{name}: {node.span.text}}}`" for name in found)
+        values = {name: (mended(reader, node, cls, name) or (node.span.text,))[0] for name in found}
+        told = " or ".join(f"`{{{name}: {text}}}`" for name, text in values.items())
         return f"write {told}" if 1 <= len(found) <= 2 else None
     if issubclass(cls, kinds.Record) and (meant := cls.meant_by(node.text)) is not None:
         return meant
@@ -282,7 +283,8 @@ def value_alone(reader: Any, node: Node, arms: tuple[Any, ...], what: str) -> st
     if not isinstance(node, MappingNode) or len(node.entries) != 1:
         return None
     (key, inner), records = next(iter(node.entries.items())), [arm for arm in arms if _is_record(arm)]
-    if not records or not isinstance(inner, Scalar) or any(_known(arm, key) is not None for arm in records):
+    named = any(get_origin(unwrap(arm)[0]) is dict for arm in arms)
+    if named or not records or not isinstance(inner, Scalar) or any(_known(arm, key) is not None for arm in records):
         return None
     for arm in arms:
         if (

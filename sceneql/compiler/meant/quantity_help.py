@@ -60,6 +60,20 @@ def is_part(reader: Any, node: Node) -> bool:
     return isinstance(node, Scalar) and node.text in reader.names.parts
 
 
+def field_of_part(reader: Any, node: Node, written: Mapping[str, Node], cls: type[BaseModel]) -> str | None:
+    """The help for a part's name where a choice stands: the one other field that names such a part."""
+    if not is_part(reader, node) or not isinstance(node, Scalar):
+        return None
+    families = reader.names.catalogue.families_of(reader.names.parts[node.text].word)
+    fields = [
+        kinds.written_name(key)
+        for key, info in cls.model_fields.items()
+        if any(isinstance(mark, kinds.Refers) and mark.family in families for mark in marks_of(info))
+        and kinds.written_name(key) not in written
+    ]
+    return f"'{node.text}' is a part: write `{fields[0]}: {node.text}`" if len(fields) == 1 else None
+
+
 def other_output(reader: Any, node: Node, info: Any, name: str) -> str | None:
     """The help for a part, or an output of it, in place of an output that the field takes: these."""
     part = reader.names.part_of(node.text)[0] if isinstance(node, Scalar) else ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 from typing import Any
 
@@ -14,6 +15,7 @@ from sceneql.language.tree import Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import same_as
 from sceneql.quantities.instead import instead
 
+EQUATION = re.compile(r"(?:d\(?(\w+)\)?/dt|(\w+)'|(\w+)_dot)\s*=\s*(.+)")
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 NAMES = ("name", "id")
 """Fields by which other programs name the items of a list."""
@@ -69,6 +71,12 @@ def by_name(node: Node, item: Any, parts: bool) -> str:
     texts = [f"{name}: {{{_inside(one, NAMES)}}}" for one in items if (name := _name_in(one))]
     if record and items and len(texts) == len(items):
         return f"write `{{{', '.join(texts)}}}`, the name of each before its fields"
+    if record and items and all(isinstance(one, MappingNode) for one in items) and not sided:
+        told = ", ".join(f"{name}: {one.span.text}" for name, one in zip(LETTERS, items, strict=False))
+        if "\n" not in told and len(items) <= len(LETTERS):
+            return f"each has a name of its own: write `{{{told}}}`"
+    if not record and (rates := equated([one.span.text for one in items or [node]])) is not None:
+        return f"write `{{{rates}}}`"
     if not record and len(items) > 1 and all(isinstance(one, Scalar) for one in items):
         names = [one.span.text.rpartition(".")[2] for one in items]
         own = names if len({*names}) == len(items) and all(map(str.isidentifier, names)) else [*LETTERS]
@@ -82,6 +90,14 @@ def by_name(node: Node, item: Any, parts: bool) -> str:
     if record and "of" in item.model_fields and first != "name":
         example = f"{{of: {first}}}"
     return f"write `{{{first}: {example}}}`, each entry under a name of its own"
+
+
+def equated(texts: Collection[str]) -> str | None:
+    """Equations as a book writes them, ``x' = v``, as names with values; None of other texts."""
+    pieces = [one.strip() for text in texts for one in re.split(r"[,;]\s+", text.strip("'\"")) if one.strip()]
+    found = [EQUATION.fullmatch(one) for one in pieces]
+    told = [f"{one[1] or one[2] or one[3]}: {one[4]}" for one in found if one is not None]
+    return ", ".join(told) if told and len(told) == len(pieces) else None
 
 
 def _name_in(node: Node) -> str:

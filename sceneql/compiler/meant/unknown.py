@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection
 from collections.abc import Mapping as Naming
-from collections.abc import Sequence as Sequenced
 from itertools import pairwise
 from typing import Any
 
@@ -13,11 +12,11 @@ from pydantic import BaseModel
 
 from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.meant.grouped import Renamed, ends, flat, numbered_alike, of_inner
 from sceneql.compiler.meant.own_values import with_own
 from sceneql.compiler.meant.together import filled, together
 from sceneql.compiler.meant.unwrapped import unwrapped
 from sceneql.compiler.names import Vocabulary
-from sceneql.compiler.vector_fields import ENDS
 from sceneql.kinds import written_name
 from sceneql.language.replaced import word_of
 from sceneql.language.scope import Entry
@@ -27,9 +26,7 @@ from sceneql.language.tree import Mapping, Node, Scalar
 from sceneql.quantities.diagnostic import STRONG, Diagnostics, ScriptError, all_same_as, nearest, same_as
 from sceneql.quantities.expression import Number, Vector
 from sceneql.quantities.instead import instead
-from sceneql.quantities.literal import vector_meant
 from sceneql.quantities.parser import parse_value
-from sceneql.quantities.span import Source
 
 DEFAULT = {"cameras": "perspective", "outputs": "video", "objects": "sphere", "contacts": "collision"}
 """The word of a family that is shown where several have a field."""
@@ -47,10 +44,6 @@ FEW = 4
 """Largest number of words with a field by which it is told what has that field."""
 
 _UNPARTED = re.compile(r"(\w+)(?:(:)|\s*=| )(.*)")
-
-
-Renamed = Callable[[str, Node], tuple[bool, str]]
-"""For a known field and a value: whether the field takes it, and the help that offers the field."""
 
 
 def report_unknown(
@@ -90,56 +83,35 @@ def report_unknown(
         same = [] if help else [one for one in all_same_as(name, known) if one not in node.entries]
         offers = [offer(one, node.entries[name]) for one in same]
         help = help or next((text for fits, text in offers if fits), None)
-        help = help or _ends(name, unknown, node, known, offer) or _flat(name, node.entries[name], known)
+        help = (
+            help
+            or numbered_alike(name, unknown, node, known, offer)
+            or ends(name, unknown, node, known, offer)
+            or flat(name, node.entries[name], known)
+        )
         help = help or instead(f"field.{family}", name)
         help = help or next((text for _, text in offers if "`" in text and "..." not in text), None)
         help = help or instead("field", name)
         help = help or (offers[0][1] if offers else None)
         help = help or inside(name, node.entries[name])
         help = help or _like(name, node.entries[name], known, offer, family, catalogue)
-        help = help or _of_inner(node.entries[name])
+        help = help or of_inner(node.entries[name])
         if help is None and len(known) == 1 and (only := offer(next(iter(known)), node.entries[name]))[0]:
             help = only[1]
         if help is None and len(known) == 1:
-            help = f"it stands inside: `{{{next(iter(known))}: {{{name}: ...}}}}`"
+            text = node.entries[name].span.text
+            text = text if "\n" not in text and len(text) <= SHOWN else "..."
+            help = f"it stands inside: write `{next(iter(known))}: {{{name}: {text}}}`"
         if help is None and table and table not in node.entries:
             inner = ", ".join(f"{one}: {node.entries[one].span.text}" for one in unknown)
             help = f"names of your own stand in `{table}`: write `{table}: {{{inner}}}`"
         for one in (name, *unknown) if help else ():
-            help = with_own(help or "", one, node.entries[one].span.text)
+            help = with_own(help or "", one, node.entries[one].span.text, beside=one != name)
         told.setdefault(help or f"it has {', '.join(known)}{len(told) * WITHOUT}", []).append(name)
     for help, names in told.items():
         text = f"field '{names[0]}'" if len(names) == 1 else f"fields {', '.join(map(repr, names))}"
         found.error("unknown-field", f"{title} has no {text}", node.keys[names[0]].span, help=help.rstrip(WITHOUT))
     return not unknown
-
-
-def _ends(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str], offer: Renamed) -> str | None:
-    """The help for the two ends of a range beside the other fields of what has a field for both: ``min``, ``max``."""
-    field = next((one for one in ("limits", "range") if one in known and one not in node.entries), None)
-    both = next((pair for pair in zip(*ENDS, strict=False) if name in pair and {*pair} <= {*unknown}), None)
-    if field is None or both is None:
-        return None
-    low, high = (node.entries[one].span.text for one in both)
-    text = vector_meant(f"{low}, {high}") or f"[{low}, {high}]"
-    return offer(field, Scalar(text, "text", False, Source("value", text), 0, len(text)))[1]
-
-
-def _flat(name: str, value: Node, known: Collection[str]) -> str | None:
-    """The help for a group of fields that stand among the others here, or a group in it."""
-    inner = next(iter(value.entries.values())) if isinstance(value, Mapping) and len(value.entries) == 1 else None
-    if isinstance(inner, Mapping) and not {*value.entries} & {*known}:  # type: ignore[union-attr]
-        return _flat(name, inner, known)
-    if not isinstance(value, Mapping) or not value.entries or not all(inner in known for inner in value.entries):
-        return None
-    told = ", ".join(f"{inner}: {node.span.text}" for inner, node in value.entries.items())
-    return f"they stand among the other fields, without `{name}`: write `{told}`"
-
-
-def _of_inner(value: Node) -> str | None:
-    """The help for a group of fields that stand in another part here."""
-    inner = value.entries if isinstance(value, Mapping) else ()
-    return next((help for one in inner if (help := instead("field", one)) is not None), None)
 
 
 def _like(

@@ -178,5 +178,5 @@ class MovingSolids:
     def fractions(self) -> Floats:
         """The open fraction (cells,) of each cell at the start (obstacles.Solids.fractions)."""
         n = int(np.prod(self.faces.cells.shape))
-        found: Floats = self.assembly.numbers()[self.whole : self.whole + n]
+        found: Floats = self.assembly.numbers(self.whole, self.whole + n)
         return found

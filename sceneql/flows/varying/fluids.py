@@ -120,9 +120,9 @@ def fill(
 
     ``triangles`` (m, 3): of a skin in a 3D flow; ``tension``: Membrane.largest_tension [N/m].
     """
-    ints, numbers = flow.varying, assembly.numbers()
+    ints = flow.varying
     density, viscosity = fluid
-    count, rows = (int(one) for one in numbers[ints[own.TABLE] : ints[own.TABLE] + 2])
+    count, rows = (int(one) for one in assembly.numbers(ints[own.TABLE], ints[own.TABLE] + 2))
     corners = assembly.floats(np.ravel(triangles)) if len(triangles) else 0
     known = assembly.floats(np.full(3 * skin.count, np.nan))
     row = [skin.count, skin.position_at, len(triangles), corners, density, viscosity, known]
@@ -130,4 +130,5 @@ def fill(
     assembly.write(ints[own.TABLE], np.array([count + 1.0]))
     cell = min(flow.spacing[: len(flow.areas)])
     turn = (tension / (0.5 * (density + flow.density) * cell**3)) ** 0.5
-    assembly.write(ints[own.FASTEST], np.array([max(turn, numbers[ints[own.FASTEST]])]))
+    fastest = ints[own.FASTEST]
+    assembly.write(fastest, np.array([max(turn, *assembly.numbers(fastest, fastest + 1))]))
