@@ -64,10 +64,11 @@ def warn_of_falling_through(
 
 def warn_of_unpulled(tasks: Mapping[str, Task], groups: Sequence[Island], found: Diagnostics) -> None:
     """Warn of each model that no force pulls down to the ground, the only thing that stands still and that it hits."""
-    level = ground_level(tasks)
+    ground = ground_level(tasks)
+    level = 0.0 if ground is None else ground
     forces = [task for task in tasks.values() if isinstance(task.kind, Interaction) and not isinstance(task.kind, Tie)]
     start: Any = Beginning(tasks)
-    for island in groups if level is not None and not forces else ():
+    for island in groups if ground is not None and not forces else ():
         for name in island.models:
             task, hit = (
                 tasks[name],

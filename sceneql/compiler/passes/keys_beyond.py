@@ -19,7 +19,7 @@ ROUNDING = 1e-9
 
 
 def warn_of_keys(tasks: Mapping[str, Task], clock: Clock, found: Diagnostics) -> None:
-    """Warn of keyframes whose last time is beyond the clock's end, most likely in frames where the second one is far."""
+    """Warn of keyframes whose last time is beyond the clock's end: most likely in frames, where the second is far."""
     known: set[int] = set()
     for task in tasks.values():
         for value in values_of(task.kind):
