@@ -30,7 +30,17 @@ def factor(a, n, stride, least):
         # Of row k of the matrix the rows of U before it are subtracted only now: its diagonal is still there.
         row = k * stride
         diagonal = a[row + k]
-        for j in range(k - k % LANES, n, LANES):
+        j = k - k % LANES
+        while j + LANES < n:
+            sums, more = load(a, row + j), load(a, row + j + LANES)
+            for i in range(k):
+                above = i * stride
+                part = -(a[above + k] * a[above + i])
+                sums, more = fma(part, load(a, above + j), sums), fma(part, load(a, above + j + LANES), more)
+            store(a, row + j, sums)
+            store(a, row + j + LANES, more)
+            j += 2 * LANES
+        if j < n:
             sums = load(a, row + j)
             for i in range(k):
                 above = i * stride

@@ -126,22 +126,19 @@ def add_blocks(floats, ints, at, part):
     own_half = not whole and ints[ints[PLAN_AT] + layout.UNIT] > 1
     count, half, line = ints[at + SHARERS], ints[at + HALF], stride(ints)
     table = at + OF_SHARED + OF_TIE * count
-    for other in range(count):
-        second = ints[at + OF_SHARED + OF_TIE * other : at + OF_SHARED + OF_TIE * (other + 1)]
-        t = floats[half + T_OF * other : half + T_OF * (other + 1)]
-        for one in range(other + 1):
-            which = ints[at + OF_SHARED + OF_TIE * one : at + OF_SHARED + OF_TIE * (one + 1)]
-            above, below = ints[table + count * one + other], ints[table + count * other + one]
-            if above >= 0:
-                along, upper = line if whole else second[1], own_half and one == other
-                add_block(values, above >> 1, along, which[1], floats, which[2], t, upper, above & 1 == 1)
-            if below >= 0 and one != other:
-                first = floats[half + T_OF * one : half + T_OF * (one + 1)]
-                along = line if whole else which[1]
-                add_block(values, below >> 1, along, second[1], floats, second[2], first, False, below & 1 == 1)
-        if second[3] == 1 and not whole:
-            diagonal = floats[ints[DIAGONAL_AT] + second[0] : ints[DIAGONAL_AT] + second[0] + second[1]]
-            end_diagonal(values, ints[table + (count + 1) * other] >> 1, second[1], diagonal, part)
+    for one in range(count):
+        which = ints[at + OF_SHARED + OF_TIE * one : at + OF_SHARED + OF_TIE * (one + 1)]
+        for other in range(count):
+            place = ints[table + count * one + other]
+            if place < 0:
+                continue
+            t, rows = floats[half + T_OF * other : half + T_OF * (other + 1)], which[1]
+            along = line if whole else ints[at + OF_SHARED + OF_TIE * other + 1]
+            upper = own_half and one == other
+            add_block(values, place >> 1, along, rows, floats, which[2], t, upper, place & 1 == 1)
+            if one == other and which[3] == 1 and not whole:
+                diagonal = floats[ints[DIAGONAL_AT] + which[0] : ints[DIAGONAL_AT] + which[0] + rows]
+                end_diagonal(values, place >> 1, along, diagonal, part)
 
 
 @lean_inlined
