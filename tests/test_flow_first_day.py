@@ -109,3 +109,18 @@ def test_a_map_without_colors_has_its_own_color(tmp_path):
     moment = next(simulate(load(tmp_path / "scene.yaml"), [0.0]))
     (mesh,) = shapes_of(["water"], moment).shapes
     assert mesh.surface.color == pytest.approx(linear([0.1, 0.2, 0.5]))
+
+
+def test_what_to_write_is_what_the_script_has(tmp_path):
+    """The flow of an immersion, not its skin; a vector as formulas take it."""
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(
+        "clock: {end: 1 s}\nobjects: {ball: {sphere: {radius: 0.2 m}}}\nmodels:\n"
+        f"  skin: {{membrane: {{of: ball, law: {{tension: 5 N/m}}}}}}\n  air: {{flow: {{{BOX}, velocity: 1 0 m/s}}}}\n"
+        "forces: [{immersion: {on: [skin]}}]\n",
+        encoding="utf-8",
+    )
+    with pytest.raises(ScriptError) as told:
+        load(scene)
+    assert "For example `in: air`" in str(told.value)
+    assert "write `initial: {velocity: [1 m/s, 0 m/s]}`" in str(told.value)

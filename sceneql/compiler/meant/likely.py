@@ -169,9 +169,11 @@ def inside(
     for key, info in cls.model_fields.items():
         for arm in (info.annotation, *get_args(info.annotation)):
             if _is_record(arm) and (taken := _known(arm, name)) is not None:
-                field = kinds.written_name(key)
-                told = f"it stands inside `{field}`: write `{field}: {{{name}: {text}}}`"
-                found.append((wrong_as(reader, node, taken, name) is not None, told))
+                field, wrong = kinds.written_name(key), wrong_as(reader, node, taken, name)
+                mended = re.fullmatch("write `([^`]+)`", wrong[0].help or "") if wrong and len(wrong) == 1 else None
+                own_text = text if mended is None else mended[1]
+                told = f"it stands inside `{field}`: write `{field}: {{{name}: {own_text}}}`"
+                found.append((wrong is not None and mended is None, told))
     outer: type[BaseModel] | None = reader.outer
     if outer is not None and (taken := _known(outer, name)) is not None:
         told = f"it stands outside of these braces: write `{{..., {name}: {text}}}` around them"

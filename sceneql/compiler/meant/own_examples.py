@@ -24,6 +24,8 @@ def own_example(names: Names, info: Any) -> str | None:
     if mark is None or get_origin(info.annotation) is dict:
         return None
     found = list(dict.fromkeys(_bodies(names, mark) if mark.bodies else _parts(names, mark)))
+    said = info.description or ""
+    found = [one for one in found if one in names.parts and f"`{names.parts[one].word}`" in said] or found
     if not found:
         return None
     if is_fixed(info.annotation):
