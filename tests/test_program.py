@@ -54,6 +54,13 @@ def test_check_tells_the_mistakes_of_all_variants(tmp_path):
     assert said.index("radus") < said.index("1 s")
 
 
+def test_a_broken_value_beside_variants_is_told_once(tmp_path):
+    """The variants, of which the same mistake was not told again, went on without the part and ended in a KeyError."""
+    text = STILL.replace("radius: 0.2 m", "radius: random(1, 3) s") + "models: {fall: {particles: {of: ball}}}\n"
+    (tmp_path / "s.yaml").write_text("define: {k: 1}\n" + text + "variants: {other: {define.k: 2}}\n")
+    assert "1 error" in sceneql(tmp_path, "check", "s.yaml", code=3)
+
+
 def test_an_object_by_the_name_of_a_material_does_not_hide_it(tmp_path):
     """It was refused with the advice to write what stood there."""
     (tmp_path / "s.yaml").write_text(STILL.replace("ball: {sphere: {", "mirror: {sphere: {material: mirror, "))

@@ -82,7 +82,7 @@ def check(script: Script, catalogue: Catalogue, found: Diagnostics, parsed: Pars
     checker.defaults()
     settings = checker.settings()
     improve_sections(script, catalogue, checker.reader(), found)
-    tasks = checker.whole_tasks() if found.errors else checker.tasks
+    tasks = checker.whole_tasks()  # what is broken may have been told before, as of a variant
     known = frozenset(checker.without), frozenset(checker.implied)
     return Checked(script, settings, tasks, checker.timed, tuple(checker.files), *known)
 

@@ -139,7 +139,7 @@ def _meant(text: str) -> str:
     return near or 'write a CSS name, "#rrggbb" or three numbers from 0 to 1'
 
 
-_HSL = re.compile(r"hsla?\(\s*([^,]+?)\s*(deg)?\s*,\s*([\d.]+)(%?)\s*,\s*([\d.]+)%?[^)]*\)")
+_HSL = re.compile(r"hsla?\(\s*([^,]+?)\s*(deg)?\s*,\s*([\d.]+)(%?)\s*,\s*([\d.]+)(%?)[^)]*\)")
 """Hue, saturation and lightness as in CSS, or each from 0 to 1."""
 
 
@@ -148,14 +148,14 @@ def _of_hue(text: str) -> str | None:
     if (told := _HSL.fullmatch(text)) is None:
         return None
     hue, degrees, *rest = told.groups()
-    full = 100 if rest[1] else 1
+    saturation, lightness = (min(float(rest[k]) / (100 if rest[k + 1] else 1), 1.0) for k in (0, 2))
     try:
         turns = float(hue)
     except ValueError:
         inner = f"({hue})" if re.search(r"[-+]", hue) else hue
         return f"the full color of a hue, which goes from 0 to 1, is `hue({inner}/360)`"
-    turns /= 1 if turns <= 1 and full == 1 and degrees is None else 360
-    return _of_bytes(hls_to_rgb(turns, min(float(rest[2]) / full, 1), min(float(rest[0]) / full, 1)))
+    turns /= 1 if turns <= 1 and not (degrees or "%" in text) else 360
+    return _of_bytes(hls_to_rgb(turns, lightness, saturation))
 
 
 def _of_bytes(numbers: Sequence[float]) -> str:

@@ -222,6 +222,16 @@ class _Scan:
             caret = Span(self.source, start, end).part(*unparted.span(2 if glued else 1))
             diagnostic = Diagnostic("yaml-syntax", missing, caret, f"write `{name}: {written[unparted.end() :]}`")
             return Fault("yaml-syntax", start, end, caret.start, "", diagnostic)
+        if key and calls_another(written):
+            text, help = "a value stands here without a name", f"write `name: {written}`, or leave it out"
+            return Fault(
+                "yaml-syntax",
+                start,
+                end,
+                start,
+                "",
+                Diagnostic("yaml-syntax", text, Span(self.source, start, end), help),
+            )
         if (unit := _UNIT_IN_BRACKETS.fullmatch(written)) is not None:
             return Fault("torn-expression", start, end, start, f"{unit[1]} {unit[2]}")
         if (copy := _COPY.fullmatch(written)) is not None:
