@@ -21,6 +21,7 @@ from sceneql.quantities.dimension import (
     FORCE,
     FREQUENCY,
     LENGTH,
+    MASS,
     PERCENTAGE,
     PLAIN,
     TIME,
@@ -38,6 +39,8 @@ from sceneql.quantities.units import describe, in_words, unit_of
 
 PLAIN_NUMBER = Quantity(PLAIN)
 COMPONENTS = ("x", "y", "z")
+_SIZES = (None, PLAIN, LENGTH, MASS * LENGTH**2)
+"""Dimensions of vectors that have a size along each axis."""
 _AXES: dict[Dimension | None, int] = {LENGTH / TIME: 0, FREQUENCY: 1, FORCE: 1}
 SHORTEST, LONGEST = 1e-100, 1e100
 """Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
@@ -281,7 +284,8 @@ def _repeated(expr: Expr, wanted: Quantity) -> str | None:
         zero = "0" if wanted.dimension is None or wanted.dimension.plain else f"0 {unit_of(wanted.dimension)}"
         return f"write `[{', '.join([text, *(size - 1) * [zero]])}]`, a value for each axis"
     items = size * [text]
-    if size == 3 and (axis := _AXES.get(expr.type.dimension)) is not None:  # of these a direction is meant
+    if size == 3 and expr.type.dimension not in _SIZES:  # of others a direction is meant
+        axis = _AXES.get(expr.type.dimension, 1)
         zero = re.sub(r"^[-+.\d]+(e[-+]?\d+)?", "0", text)
         items = [text if k == axis else zero for k in range(size)]
     vector = vector_meant(", ".join(items))

@@ -12,10 +12,12 @@ if TYPE_CHECKING:
 def rising(keys: NDArray[int64]) -> NDArray[int64]:
     """The distinct values of nonnegative integers, ascending.
 
-    Numpy's `unique` hashes them and takes many times as long.
+    Numpy's `unique` hashes them and takes many times as long; its `diff` takes twice as long as a comparison.
     """
     import numpy as np
 
     ordered = np.sort(keys)
-    found: NDArray[int64] = ordered[np.flatnonzero(np.diff(ordered, prepend=-1))]
+    new = np.ones(len(ordered), dtype=bool)
+    np.not_equal(ordered[1:], ordered[:-1], out=new[1:])
+    found: NDArray[int64] = ordered[new]
     return found

@@ -28,6 +28,7 @@ from sceneql.linear.stage_kernels import (
     CORE_AT,
     POSITIONS,
     POSITIONS_AT,
+    ROUNDED,
     TALLIES,
     TALLIES_AT,
     UNKNOWNS,
@@ -61,6 +62,8 @@ LOADED, LOOSELY = 1e-3, 0.1
 relative tolerance."""
 MOST_TURNS = 8
 """Largest number of solutions of a stage, each with the loads of the one before (Li et al. 2020, 5.5)."""
+ROUNDING = 1e-12
+"""Relative rounding error of a step's length."""
 NOISE = 1e-4
 """Two updates in a row below this, in units of the tolerance, end the iteration: the rest is rounding."""
 NOISE_APART = TINY
@@ -166,6 +169,12 @@ def leave(rate, t, a, base, y, residual, plan, floats, ints):
 
 
 @lean_inlined
+def same(factored, a, plan):
+    """Whether the factors are of this a: where the plan says so, also where it is another by rounding, as a step's."""
+    return factored == a or (plan[ROUNDED] == 1 and abs(factored - a) <= ROUNDING * a)
+
+
+@lean_inlined
 def unlike(memory):
     """The part by which loads of friction may differ from those that the stage was solved with."""
     return min(LOOSELY, max(LOADED, 100.0 * memory[RELATIVE]))
@@ -213,7 +222,7 @@ def converge(functions, t, a, base, y0, y, scratch, jacobian, store, scales, mem
                 return False
         size = math.inf
         regular = True
-        if stale or memory[FACTORED] != a:
+        if stale or not same(memory[FACTORED], a, plan):
             memory[FACTORED] = a
             memory[FACTORIZATIONS] += 1.0
             regular = factor_stage(plan, a, jacobian, scales, store)

@@ -92,7 +92,7 @@ def stage_plan(system: System, exact: bool = False, signs: bool = False) -> Stag
     negatives = number_of(solver.kernels.negatives, NEGATIVES) if told else -1
     head = [*counts, *starts[:7], solver.factors, 0, *kernels, left.unit, *shared, negatives]
     head += [len(inertia.entries), len(inertia.held), *starts[7:9], system.border, len(bordering), starts[9]]
-    head += [int(solver.keeps)]
+    head += [int(solver.keeps), int(system.fields.on_elements > 0)]
     assert len(head) == HEAD
     numbers = np.concatenate([np.asarray(part, dtype=np.int64) for part in (head, *lists)])
     room = 5 if solver.keeps else 1

@@ -10,9 +10,10 @@ row by row); tiles of blocks, the numbers of threads_kernels.threads, the addres
 the kernel that counts negative eigenvalues (-1: none); numbers and places of the entries of inertia that is a matrix,
 and of the values that are held (elimination.Inertia); of the unknowns, how many of the last border the system
 (system.Slopes.border), number and place of what their rows hold of rates (4: place among the values, row, entry of y,
-place in the Jacobian); 1 where factors are kept for later matrices (kept_factors_kernels)]. ``scales``: factors of the
-rows, 1 for those of such inertia; then Inertia.numbers. ``store``: values of the matrix, factors, scratch, where
-factors are kept four vectors of unknowns, two numbers a tile, and last a right side (unknowns,).
+place in the Jacobian); 1 where factors are kept for later matrices (kept_factors_kernels), and 1 where for an a that
+differs by rounding]. ``scales``: factors of the rows, 1 for those of such inertia; then Inertia.numbers. ``store``:
+values of the matrix, factors, scratch, where factors are kept four vectors of unknowns, two numbers a tile, and last a
+right side (unknowns,).
 """
 
 from numba import types
@@ -26,7 +27,7 @@ SIZE, UNKNOWNS, VALUES, POSITIONS, TALLIES = range(5)
 CORE_AT, POSITIONS_AT, PARTS_AT, DIAGONAL_AT, TWINS_AT, SOLVER_AT, TALLIES_AT = range(5, 12)
 FACTORS, SYMMETRIC, FACTOR, SOLVE, UNIT = range(12, 17)
 TILES, ENTRY, THREADS, ASSEMBLE, COMPARE, NEGATIVES, INERTIA, HELD, INERTIA_AT, HELD_AT = range(17, 27)
-BORDER, BORDERS, BORDERS_AT, KEEPS, HEAD = range(27, 32)
+BORDER, BORDERS, BORDERS_AT, KEEPS, ROUNDED, HEAD = range(27, 33)
 
 ROUNDING = 1e-13
 """Differences of transposed values up to this part of the largest value count as rounding."""

@@ -81,6 +81,17 @@ OF_SECTIONS = (
         "resolution cells divisions n subdivisions segments",
         "how far its nodes are apart says how many there are: `spacing: 5 cm`",
     ),
+    (
+        "field.turbulence",
+        "strength amplitude intensity amount magnitude power",
+        "how fast it blows is its `speed: 2 m/s`",
+    ),
+    ("field.turbulence", "scale frequency noise_scale wavelength", "how large its eddies are is their `size: 0.5 m`"),
+    (
+        "place.iso_surface",
+        "of",
+        "the surface of a formula is `implicit`, where that is 0: write `{implicit: {field: x^2 + y^2 + z^2 - 1}}`",
+    ),
     ("field.gear", "ratio gear_ratio transmission", "its teeth say it: a ratio of 2 is `teeth: 40 20`"),
     (
         "field.streamlines",

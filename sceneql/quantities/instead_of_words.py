@@ -234,7 +234,7 @@ OF_PARTS = (
         "a material says it, `material: {glossy: {roughness: 0.2}}`, or `mirror`, `metal`: `sceneql words glossy`",
     ),
     ("field", "friction", "a contact has it, `contacts: {touch: {collision: {friction: 0.3}}}`"),
-    ("field.objects", "count copies number amount instances", REPEAT),
+    ("field.objects", "count copies number instances", REPEAT),
     (
         "field",
         "gravity",

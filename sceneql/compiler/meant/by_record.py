@@ -57,6 +57,8 @@ def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> st
             return f"write its sizes as they shall be, or let a group scale it: `{in_group(word, node.entries)}`"
         if (model := _of_model(reader, name, node.entries[name])) is not None:
             return model
+        if (around := _around(reader, cls, name, node)) is not None:
+            return around
         plain = unwrapped(node, cls.family, reader.names.catalogue)
         return balls_of(reader.names, node) if plain is None else f"{ANOTHER}: write `{plain}`"
     told = _by_names(reader, cls, name, node) or _inside_one(cls, name, node) or _of_force(reader, cls, name, node)
@@ -169,6 +171,21 @@ def _of_model(reader: Any, name: str, value: Node) -> str | None:
     fields = "".join(f", {one}: {inner.span.text}" for one, inner in value.entries.items() if one != field)
     told = f"{{my_{word}: {{{word}: {{{field}: {reader.owner}{fields}}}}}}}"
     return f"a model is a part of its own, that names the object: write `models: {told}`"
+
+
+def _around(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:
+    """The help for an object's word that takes another one, as a field of that: ``twist: 90 deg`` of a box."""
+    word, value = cls.__module__.rpartition(".")[2], node.entries[name]
+    other = reader.names.catalogue.load("objects", name)
+    if other is None or "of" not in other.model_fields or not isinstance(value, Scalar):
+        return None
+    fields = list(quantities_fitting(reader, value, other.model_fields))
+    rest = ", ".join(f"{key}: {one.span.text}" for key, one in node.entries.items() if key != name)
+    if not fields or "\n" in rest or len(rest) > SHOWN:
+        return None
+    inner = f"{{{word}: {{{rest}}}}}"
+    told = f"{{{name}: {{of: {inner}, {kinds.written_name(fields[0])}: {value.span.text}}}}}"
+    return f"it is an object around another: write `{told}`"
 
 
 def _of_force(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:

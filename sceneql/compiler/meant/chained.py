@@ -38,6 +38,7 @@ STEPS, TRIES = 6, 24
 _FRAMES = re.compile(r"(\d+(?:\.\d+)?)\s*(?:frames?|f)")
 _SHOWN = re.compile(r"`([^`]+)`")
 _NUMBER = re.compile(r"(?<![\w.])\d+\.?\d*(?:[eE][-+]?\d+)?")
+_PLACE = re.compile(r"(?<![\w.])[xyz](?![\w.(])")
 _TIMES = re.compile(r"(?<=\d)[x×](?=\d)")  # 1920x1080
 _WRITTEN = re.compile(r"(?:write|is written|did you mean) [`']([^`]+?)[`'](?:\?|;|,|:|$| )")
 
@@ -91,6 +92,10 @@ def better_alone(
     if about is not None:
         told_apart = f"{name}: {about[0]} {about[2]}".rstrip() + f", tolerance: {about[1]} {about[2]}".rstrip()
         found[before] = replace(found[before], help=f"how far it may be off stands apart: `{told_apart}`")
+        return
+    other = instead(f"place.{title}", name) if _PLACE.search(node.span.text) else None
+    if other is not None and {code for code, _ in told} == {"unknown-name"}:
+        found[before:] = [replace(found[before], help=other)]
         return
     if len(told) != 1:
         return
@@ -157,10 +162,8 @@ def better_alone(
 def _one_for_all(node: Node, info: Any, name: str, title: str) -> str | None:
     """The help for a formula of x, y and z where a field is one quantity; None for others."""
     marks = [mark for mark in quantities(info) if mark.shape == () and mark.dimension is not None]
-    if not marks or not isinstance(node, Scalar) or not re.search(r"(?<![\w.])[xyz](?![\w.(])", node.text):
+    if not marks or not isinstance(node, Scalar) or not _PLACE.search(node.text):
         return None
-    if (other := instead(f"place.{title}", name)) is not None:
-        return other
     more = f"; `sceneql words {title}` tells what goes by place" if title.isidentifier() else ""
     return f"it is one value, the same at all places, as `{name}: {format_quantity(1.0, marks[0].dimension)}`{more}"
 

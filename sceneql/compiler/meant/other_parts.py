@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from sceneql import kinds
+from sceneql.language.scope import Entry
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.quantities.diagnostic import same_as
 
@@ -39,12 +40,21 @@ def of_contact(reader: Any, cls: type[BaseModel], name: str, text: str) -> str |
     if not issubclass(cls, kinds.Kind) or cls.family not in ("models", "objects") or reader.names.catalogue is None:
         return None
     for part, entry in reader.names.parts.items():
-        contact = reader.names.catalogue.load("contacts", entry.word)
+        contact = reader.names.catalogue.load("contacts", entry.word) or _lacking(reader, entry, name)
         known = [] if contact is None else [kinds.written_name(key) for key in contact.model_fields]
         field = same_as(name, known) if cls.family == "models" else name if name in known else None
         if field is not None:
             inner = "" if entry.fields is None else "..., "
             own = f"{part}: " if part != entry.word else ""
             told = f"{own}{{{entry.word}: {{{inner}{field}: {text}}}}}"
-            return f"'{part}' has it, the contact of the script: write `{told}` there"
+            what = "the contact" if issubclass(contact, kinds.Contact) else "the force"
+            return f"'{part}' has it, {what} of the script: write `{told}` there"
     return None
+
+
+def _lacking(reader: Any, entry: Entry, name: str) -> Any:
+    """The class of a force of the script that needs a field and has not got it: the charge of a `magnetic` one."""
+    cls = reader.names.catalogue.load("forces", entry.word)
+    fields = entry.fields.entries if isinstance(entry.fields, MappingNode) else {}
+    info = None if cls is None else cls.model_fields.get(name)
+    return cls if info is not None and info.is_required() and name not in fields else None

@@ -24,22 +24,23 @@ DIRECTION = "direction"
 """A field whose numbers have no unit, and point as a place does."""
 
 
-def with_own(help: str, name: str, text: str) -> str:
+def with_own(help: str, name: str, text: str, *, beside: bool = False) -> str:
     """A help whose one example that an unknown field's value ``text`` could stand for has that value.
 
     Of lengths, times and plain numbers, which are many things, it has to be by the field's name, or one that means the
-    same.
+    same; likewise the value of a field ``beside`` the one that the help is for.
     """
     own = _type(text)
     if own is None or (name in UNSURE and HALF not in help):
         return help
     found = [one for shown in _SHOWN.finditer(help) for one in _EXAMPLE.finditer(help, *shown.span())]
     vague = own[1] is None or own[1].plain or own[1] in (LENGTH, TIME)
+    vague = beside or (vague and (len(found) > 1 or own[1] not in (LENGTH, TIME)))
     fits = [one for one in found if _type(one[2]) == own and (not vague or same_as(name, [one[1]]) is not None)]
-    if HALF in help and own[0] == ():
+    if HALF in help and own[0] == () and not beside:
         fits, text = [one for one in found if _type(one[2]) == own], _halved(text)
     towards = [one for one in found if one[1] == DIRECTION and own == ((3,), LENGTH, LENGTH.kind)]
-    if towards and not fits:
+    if towards and not (fits or beside):
         fits, text = towards, " ".join(re.findall(_NUMBER, text))
     if len(fits) != 1:
         return help

@@ -106,7 +106,7 @@ def report_unknown(
             inner = ", ".join(f"{one}: {node.entries[one].span.text}" for one in unknown)
             help = f"names of your own stand in `{table}`: write `{table}: {{{inner}}}`"
         for one in (name, *unknown) if help else ():
-            help = with_own(help or "", one, node.entries[one].span.text)
+            help = with_own(help or "", one, node.entries[one].span.text, beside=one != name)
         told.setdefault(help or f"it has {', '.join(known)}{len(told) * WITHOUT}", []).append(name)
     for help, names in told.items():
         text = f"field '{names[0]}'" if len(names) == 1 else f"fields {', '.join(map(repr, names))}"

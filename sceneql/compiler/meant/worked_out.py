@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from collections.abc import Sequence as Sequenced
-from math import atan, degrees
+from math import atan, degrees, tau
 
 from sceneql.compiler.meant.own_values import in_si, numbers_with_unit
-from sceneql.language.tree import Mapping
+from sceneql.language.tree import Mapping, Sequence
 
 LENSES, FILM = ("focal_length", "lens", "focallength"), 24.0
 """Fields of other programs for a lens, and the height of its film [mm]."""
@@ -22,6 +22,12 @@ TIPS, TAILS = ("to", "end", "head", "tip"), ("from", "start", "begin", "origin",
 """Fields of other programs for the ends of an arrow."""
 AWAY = ("distance", "radius", "dist")
 """Fields of other programs for how far a camera stays behind what it follows."""
+PLACES = ("center", "centre", "position", "pos", "at", "location", "point")
+"""Fields of other programs for the place of a ball."""
+WAYS, SIZES = ("direction", "dir", "axis"), ("length", "magnitude", "size", "len")
+"""Fields of other programs for an arrow's direction and length."""
+WHIRLS = ("speed", "velocity", "rate", "strength", "angular_velocity", "omega")
+"""Fields of other programs for how fast a vortex turns."""
 LASTING = ("duration", "time", "seconds", "period")
 """Fields of other programs for how long a motion takes."""
 GRAVITATION = 6.6743e-11
@@ -33,6 +39,8 @@ ABOVE = 0.2
 def worked_out(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
     """The help for an unknown field whose value here follows from what is written."""
     told = _lens(name, node, known) or _cone(name, unknown, node, known) or _arrow(name, unknown, node, known)
+    told = told or _balls(name, node, known) or _pointing(name, unknown, node, known) or _colors(name, node, known)
+    told = told or _whirling(name, node, known)
     return told or _progress(name, node, known) or _followed(name, node, known) or _pulling(name, node, known)
 
 
@@ -88,6 +96,53 @@ def _followed(name: str, node: Mapping, known: Collection[str]) -> str | None:
         return None
     text = f"from: 0 {ABOVE * away[0]:.6g} {away[0]:.6g} m"
     return f"its place as seen from what it follows is `from`: write `{text}`"
+
+
+def _balls(name: str, node: Mapping, known: Collection[str]) -> str | None:
+    """The help for balls one by one, each with its place and radius, where lists have them."""
+    value = node.entries[name]
+    items = value.items if isinstance(value, Sequence) else []
+    inner = [one.entries for one in items if isinstance(one, Mapping)]
+    if not {"points", "radius"} <= {*known} or "points" in node.entries or not items or len(inner) < len(items):
+        return None
+    lists: dict[str, list[str]] = {}
+    for one in inner:
+        for key, each in one.items():
+            lists.setdefault("points" if key in PLACES else key, []).append(each.span.text)
+    if not {"points"} <= {*lists} <= {*known} or any(len(each) < len(items) for each in lists.values()):
+        return None
+    told = {key: ", ".join(each) for key, each in lists.items()}
+    return f"write `{', '.join(f'{key}: [{each}]' for key, each in told.items())}`"
+
+
+def _pointing(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for an arrow's direction and its length, which its vector has."""
+    way, size = (next((one for one in unknown if one in names), None) for names in (WAYS, SIZES))
+    if way is None or size is None or name not in (way, size) or "vector" not in known or "vector" in node.entries:
+        return None
+    numbers = in_si(node.entries[way].span.text)
+    if not numbers:
+        return None
+    told = f"{node.entries[size].span.text}*normalize([{', '.join(f'{one:g}' for one in numbers)}])"
+    return f"write `vector: {told}`"
+
+
+def _colors(name: str, node: Mapping, known: Collection[str]) -> str | None:
+    """The help for two colors in a list, which have a field each."""
+    value = node.entries[name]
+    items = [one.span.text for one in value.items] if isinstance(value, Sequence) else []
+    if not {"color", "other"} <= {*known} or name not in ("colors", "colours") or len(items) != 2:
+        return None
+    return f"write `color: {items[0]}, other: {items[1]}`"
+
+
+def _whirling(name: str, node: Mapping, known: Collection[str]) -> str | None:
+    """The help for the speed of a vortex, 1 m off its axis."""
+    speed = in_si(node.entries[name].span.text)
+    if name not in WHIRLS or "circulation" not in known or len(speed) != 1:
+        return None
+    told = f"`circulation: {tau * speed[0]:.3g} m^2/s`"
+    return f"it falls off from the axis: {speed[0]:g} m/s at a distance of 1 m is {told}: write that"
 
 
 def _progress(name: str, node: Mapping, known: Collection[str]) -> str | None:

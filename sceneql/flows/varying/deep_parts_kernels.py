@@ -9,7 +9,7 @@ import math
 
 from numba import types
 
-from sceneql.compiled.kernels import lean
+from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.flows import layout as flow
 from sceneql.flows.varying import fluid_layout as own
 from sceneql.flows.varying.coefficients_kernels import begin, blend, finish, known
@@ -44,6 +44,22 @@ def cut(polygon, count, axis, place, below, above):
             low += 1
             high += 1
     return low + 100 * high
+
+
+@lean_inlined
+def up_to(place, last, axis, room, count, below, rest):
+    """Cut what is left of a polygon, in ``rest``, at the far plane of a layer: (corners below, corners still left).
+
+    In the last layer all of it is below.
+    """
+    if place == last:
+        for d in range(3 * count):
+            below[d] = rest[d]
+        return count, 0
+    for d in range(3 * count):
+        room[d] = rest[d]
+    found = cut(room, count, axis, place + 1.0, below, rest)
+    return found % 100, found // 100
 
 
 @lean(types.void(A, N, N, N, N, A, A, I))
@@ -85,10 +101,7 @@ def add_triangle(room, part, cover, one):
     count_z = 3
     k, last_z = math.floor(min(room[2], room[5], room[8])), math.floor(max(room[2], room[5], room[8]))
     while k <= last_z and count_z > 2:
-        for d in range(3 * count_z):
-            room[d] = rest_z[d]
-        found = cut(room, count_z, 2, k + 1.0, layer, rest_z)
-        count, count_z = found % 100, found // 100
+        count, count_z = up_to(k, last_z, 2, room, count_z, layer, rest_z)
         low = high = layer[1]
         for v in range(1, count):
             low, high = min(low, layer[3 * v + 1]), max(high, layer[3 * v + 1])
@@ -97,10 +110,7 @@ def add_triangle(room, part, cover, one):
         count_y = count
         j, last_y = math.floor(low), math.floor(high)
         while j <= last_y and count_y > 2:
-            for d in range(3 * count_y):
-                layer[d] = rest_y[d]
-            found = cut(layer, count_y, 1, j + 1.0, line, rest_y)
-            count, count_y = found % 100, found // 100
+            count, count_y = up_to(j, last_y, 1, layer, count_y, line, rest_y)
             low = high = line[0]
             for v in range(1, count):
                 low, high = min(low, line[3 * v]), max(high, line[3 * v])
@@ -109,10 +119,7 @@ def add_triangle(room, part, cover, one):
             count_x = count
             i, last_x = math.floor(low), math.floor(high)
             while i <= last_x and count_x > 2:
-                for d in range(3 * count_x):
-                    line[d] = rest_x[d]
-                found = cut(line, count_x, 0, i + 1.0, piece, rest_x)
-                count, count_x = found % 100, found // 100
+                count, count_x = up_to(i, last_x, 0, line, count_x, piece, rest_x)
                 note(piece, count, i, j, k, part, cover, one)
                 i += 1
             j += 1

@@ -122,6 +122,7 @@ def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
     of_column = [-1] * len(parents)
     children: list[list[int]] = [[] for _ in parents]
     weight = sizes.tolist()
+    widths: list[int] = []
     for j, parent in enumerate(parents):
         below = columns[starts[j] : starts[j + 1]]
         parts = [below[below >= j], *(fronts[of_column[k]].rows for k in children[j])]
@@ -131,14 +132,16 @@ def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
         last = of_column[j - 1] if j and parents[j - 1] == j else -1
         if last >= 0:
             own = fronts[last]
-            width = sum(weight[k] for k in own.columns) + weight[j]
+            width = widths[last] + weight[j]
             # With little or no fill the column joins the front of the previous column.
             if len(own.rows) - len(own.columns) == len(rows) or width <= MERGED:
                 reached = np.concatenate([own.columns, rows])
                 fronts[last] = _Front([*own.columns, j], reached, parent)
                 of_column[j] = last
+                widths[last] = width
         if of_column[j] == len(fronts):
             fronts.append(_Front([j], rows.astype(np.int64), parent))
+            widths.append(weight[j])
         if parent >= 0:
             children[parent].append(j)
     for front in fronts:
