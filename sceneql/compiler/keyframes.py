@@ -34,7 +34,11 @@ def read_keys(
     ok = True
     for key in node.entries:
         if key not in ("keys", "curve", "cycle", "delay"):
-            hint = instead("keys", key) or suggestion(key, ("keys", "curve", "cycle", "delay"))
+            hint = instead("keys", key)
+            table = node.entries["keys"]
+            if hint is not None and isinstance(table, MappingNode) and table.entries:  # as long as the keys last
+                hint = hint.replace("`cycle: 2 s`", f"`cycle: {[*table.entries][-1]}`")
+            hint = hint or suggestion(key, ("keys", "curve", "cycle", "delay"))
             found.error("unknown-field", f"keyframes have no field '{key}'", node.keys[key].span, help=hint)
             ok = False
     table = node.entries["keys"]

@@ -54,7 +54,7 @@ OF_SECTIONS = (
     ),
     (
         "field.cloth field.mass_spring",
-        "colliders collider collides_with collision collisions",
+        "colliders collider collides_with collide collide_with collision collisions",
         "what it touches is a contact: write `contacts: [collision]`, which is with all solids",
     ),
     (
@@ -92,6 +92,7 @@ OF_SECTIONS = (
         "of",
         "the surface of a formula is `implicit`, where that is 0: write `{implicit: {field: x^2 + y^2 + z^2 - 1}}`",
     ),
+    ("field.cloth", "orientation plane horizontal flat", "it hangs upright; flat it lies by `facing: 0 1 0`"),
     ("field.gear", "ratio gear_ratio transmission", "its teeth say it: a ratio of 2 is `teeth: 40 20`"),
     (
         "field.streamlines",

@@ -153,6 +153,12 @@ OF_PARTS = (
         "a body is free where no tie holds it; hinges and others stand in `ties`: `sceneql words hinge`",
     ),
     ("field.models", "feed kill", "what is fed and dies stands in the rates: `rate: -u*v^2 + 0.03*(1 - u)`"),
+    ("field.ties", "of body on object", "a tie is between two: write `between: [<own|a>, world]`"),
+    (
+        "field.sphere field.box field.cylinder field.group field.mesh field.torus",
+        "follow attach attached_to",
+        "it takes the other's place: write `position: <own|other>.position`",
+    ),
     ("field.ties", "length distance", "a rod is as long as its ends are apart at the start: `from` and `to`"),
     ("field.objects", "axis", "it stands along y, and is turned: `rotation: {about: x, angle: 90 deg}`"),
     ("field.objects", "static fixed kinematic dynamic", "an object that no model moves stands still"),

@@ -23,6 +23,7 @@ from sceneql.quantities.operations import FUNCTIONS, MANY, OPERATIONS
 from sceneql.quantities.spaced import (
     bracketed,
     by_frame,
+    in_formula,
     indexed,
     meant_by_equals,
     modulo,
@@ -336,7 +337,7 @@ class _Parser:
                     vector = f"[{', '.join(f'{one}{unit}' for one in (numbers if unit else (*numbers, last)))}]"
                 help = f"write `{vector}`"
         elif self.kind == "number" and self.before[-1:].isdigit():
-            help = "in a formula a vector has brackets, and each of its numbers the unit: `p + [1 m, 0 m, 0 m]`"
+            help = in_formula(self.text)
         elif (meant := self._unit_behind(expr)) is not None:
             help = f"a unit stands directly after a number: write `{meant}`"
             if expr.span is not None and any(isinstance(n, Name) and n.parts != ("time",) for n in each_once(expr)):

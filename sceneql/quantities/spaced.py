@@ -122,6 +122,18 @@ def declared(script: str, name: str) -> str | None:
     return f"a line that begins with `#` is a comment: write `define: {{{name}: {found[1].strip()}}}`"
 
 
+def in_formula(text: str) -> str:
+    """The help for a vector without brackets in a formula: ``p + 0 1 0 m``."""
+    told = "in a formula a vector has brackets, and each of its numbers the unit"
+    found = re.search(
+        rf"(?<![\w.])({_NUMBER.pattern})\s+({_NUMBER.pattern})\s+({_NUMBER.pattern})\s*([^\W\d][\w/^]*)?", text
+    )
+    if found is None:
+        return f"{told}: `p + [1 m, 0 m, 0 m]`"
+    vector = ", ".join(f"{found[k]} {found[4] or ''}".strip() for k in (1, 2, 3))
+    return f"{told}: write `{(text[: found.start()] + f'[{vector}]' + text[found.end() :]).strip()}`"
+
+
 def between_times(text: str) -> str | None:
     """The help for two times with the sign of a range between them where a formula says when: ``1 s to 2 s``."""
     ends = (two_ends(text) or "").split()

@@ -37,6 +37,8 @@ SEVERAL = 2
 """Least number of fields that tell the field that they stand in."""
 ANOTHER = "the word says the shape, and its fields stand in it"
 """Beginning of a help that writes another word in place of the record's."""
+USUAL_MODEL = "particles"
+"""The model of what moves as a whole, in examples."""
 PUSH = "push"
 """Name of a force in examples."""
 SHOWN = 300
@@ -57,6 +59,8 @@ def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> st
             return f"write its sizes as they shall be, or let a group scale it: `{in_group(word, node.entries)}`"
         if (model := _of_model(reader, name, node.entries[name])) is not None:
             return model
+        if (moved := _moving(reader, cls, name, node)) is not None:
+            return moved
         if (around := _around(reader, cls, name, node)) is not None:
             return around
         plain = unwrapped(node, cls.family, reader.names.catalogue)
@@ -171,6 +175,21 @@ def _of_model(reader: Any, name: str, value: Node) -> str | None:
     fields = "".join(f", {one}: {inner.span.text}" for one, inner in value.entries.items() if one != field)
     told = f"{{my_{word}: {{{word}: {{{field}: {reader.owner}{fields}}}}}}}"
     return f"a model is a part of its own, that names the object: write `models: {told}`"
+
+
+def _moving(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:
+    """The help for fields of a model, ``mass``, ``velocity``, in the object that it moves."""
+    model, owner = reader.names.catalogue.load("models", USUAL_MODEL), reader.owner
+    known = [kinds.written_name(key) for key in cls.model_fields]
+    mine = {"mass", "velocity"} & {*model.model_fields} if model is not None else set()
+    told = {one: value.span.text for one, value in node.entries.items() if one in mine and one not in known}
+    if name not in told or "." in owner or any("\n" in text for text in told.values()):
+        return None
+    fields = ", ".join(f"{one}: {text}" for one, text in told.items())
+    if mover := reader.names.mover(owner):
+        return f"'{mover}' moves it: write `{fields}` among the fields of that"
+    whole = f"models: {{my_{owner}: {{{USUAL_MODEL}: {{of: {owner}, {fields}}}}}}}"
+    return f"an object moves by a model: write `{whole}`: `sceneql words {USUAL_MODEL}`"
 
 
 def _around(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> str | None:

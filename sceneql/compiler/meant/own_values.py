@@ -15,7 +15,7 @@ _EXAMPLE = re.compile(rf"(\w+): ({_NUMBER}(?: {_NUMBER})*(?: ?(?:[^\W\d]|/|%)[\w
 _QUANTITY = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?) ?([^\W\d]\w*)?")
 _ITEM = re.compile(r"\s+(?=[-+.\d])")
 _SHOWN = re.compile(r"`[^`]*`")
-UNSURE = ("size", "width", "diameter", "extent")
+UNSURE = ("size", "width", "diameter", "extent", "from", "start", "begin", "start_time", "t0")
 """Names whose value is not the one that an example by a name that means the same shows: a diameter is two radii."""
 
 HALF = "half of"

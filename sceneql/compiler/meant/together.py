@@ -96,6 +96,8 @@ def filled(help: str, value: Node, known: Collection[str]) -> str:
     Its other fields that are among the ``known`` ones, by another name too, stand behind those of the text.
     """
     fields = dict(value.entries) if isinstance(value, Mapping) else {}
+    if "<own|" in help and isinstance(value, Scalar) and value.text.isidentifier():
+        return re.sub(r"<own[|]\w+>", value.text, help)
     if "<" in help and value.span.text and not isinstance(value, Mapping) and (own := _FIRST.search(help)) is not None:
         return f"write `{own[1]}: {value.span.text}`"
     if "<" not in help:

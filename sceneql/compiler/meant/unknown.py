@@ -89,7 +89,7 @@ def report_unknown(
             or ends(name, unknown, node, known, offer)
             or flat(name, node.entries[name], known)
         )
-        help = help or instead(f"field.{family}", name)
+        help = help or ((own := instead(f"field.{family}", name)) and filled(own, node.entries[name], ()))
         help = help or next((text for _, text in offers if "`" in text and "..." not in text), None)
         help = help or instead("field", name)
         help = help or (offers[0][1] if offers else None)
