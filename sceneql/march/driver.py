@@ -21,7 +21,9 @@ RATE = "sceneql.march.driver_kernels"
 CONTACTS = "sceneql.march.driver_contacts_kernels"
 LOCAL = "sceneql.march.driver_local_kernels"
 ACTS = "sceneql.march.driver_acts_kernels"
-"""The modules of its kernels: of rates, of contacts in mode exact, in mode local, and of what acts beside steps."""
+DRIFTS = "sceneql.march.driver_drifts_kernels"
+"""The modules of its kernels: of rates, of contacts in mode exact, in mode local, of what acts beside steps, and of
+ties in the drifts of splittings."""
 
 
 class Driver(NamedTuple):
@@ -53,7 +55,7 @@ def driver(system: System) -> Driver:
         acts.after_step if structure.after else none.no_act,
         acts.settle if structure.settling else none.no_act,
         acts.free_motion if structure.free else none.no_free_motion,
-        acts.tied_drift if structure.tied else none.no_tied_drift,
+        load(DRIFTS).tied_drift if structure.tied else none.no_tied_drift,
     )
 
 
@@ -92,13 +94,13 @@ def modules(structure: Structure) -> tuple[str, ...]:
 
 def own_modules(structure: Structure) -> tuple[str, ...]:
     """The modules that the driver of an island consists of, beside those of the island's kernels."""
-    asked = {CONTACTS: structure.exact, LOCAL: structure.local, ACTS: _acts(structure)}
+    asked = {CONTACTS: structure.exact, LOCAL: structure.local, ACTS: _acts(structure), DRIFTS: structure.tied}
     return (RATE, *(module for module, some in asked.items() if some))
 
 
 def _acts(structure: Structure) -> bool:
-    """Whether anything acts between steps or by itself."""
-    return any((structure.after, structure.settling, structure.free, structure.tied))
+    """Whether anything acts between steps, or bodies move by themselves."""
+    return any((structure.after, structure.settling, structure.free))
 
 
 def lazy_first(structure: Structure) -> list[str]:

@@ -3,13 +3,10 @@
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import brought
-from sceneql.compiled.numbered_kernels import kernel_at
 from sceneql.compiled.pointers_kernels import after_step_at, free_motion_at
 from sceneql.island import layout
 from sceneql.island.varying_kernels import values_at
-from sceneql.system.signatures_kernels import AFTER_STEP, FREE_MOTION, TIED_DRIFT, TIED_DRIFT_OF
-
-part_of_drift_at = kernel_at(TIED_DRIFT_OF)
+from sceneql.system.signatures_kernels import AFTER_STEP, FREE_MOTION
 
 
 @lean_inlined
@@ -43,12 +40,3 @@ def free_motion(h, y, floats, ints):
         move = free_motion_at(brought(ints[ints[layout.CALLS_AT] + layout.CALLS * g]))
         for b in range(ints[layout.GROUPS_AT + g], ints[layout.GROUPS_AT + g + 1]):
             move(h, y, floats, ints[ints[b] : ints[b + 1]])
-
-
-@lean(TIED_DRIFT)
-def tied_drift(functions, h, y0, kicked, y1, floats, ints):
-    """What lets drifts end where ties hold."""
-    for g in range(ints[layout.DRIFTS], ints[layout.LIMITS]):
-        hold = part_of_drift_at(brought(ints[ints[layout.CALLS_AT] + layout.CALLS * g]))
-        for b in range(ints[layout.GROUPS_AT + g], ints[layout.GROUPS_AT + g + 1]):
-            hold(functions, h, y0, kicked, y1, floats, ints, ints[ints[b] : ints[b + 1]])

@@ -47,7 +47,7 @@ class WithinContact:
         """
         import numpy as np
 
-        from sceneql.march.march_kernels import straightened
+        from sceneql.march.straightened_kernels import straightened
 
         line = np.empty_like(y)
         straightened(part, h, *step, line)
