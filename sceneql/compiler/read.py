@@ -275,7 +275,7 @@ class Reader:
                 if f"{text}p" in map(str, choices)
                 else likely.choice_meant(text, list(map(str, choices)))
             )
-            if text.isdecimal() and hint != f"write `{text}p`":
+            if text.isdecimal() and int(text[:6]) >= 16 and hint != f"write `{text}p`":
                 hint = f"write `{text} {max(2, 2 * round(int(text[:6]) * 9 / 32))}`, its width and its height"
             hint = f"write `{' '.join(several)}`" if len(several) > 1 and "".join(several).isdecimal() else hint
             raise self._fail("unknown-choice", f"{what} is {other} or one of {every}, not '{text}'", node.span, hint)

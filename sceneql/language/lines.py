@@ -146,7 +146,7 @@ def _without(source: Source, number: int) -> Fault:
 
 def _of_code(name: str, written: str) -> str | None:
     """The help for a line of a program at the left margin: ``import numpy as np``, ``let r = 2``, ``r = 2``."""
-    value = _ASSIGNED.fullmatch(written)
+    value = _ASSIGNED.fullmatch(COMMENT.split(written)[0].rstrip())
     if value is not None:
         return f"values have names under `define`: write `define: {{{value[1]}: {value[2].strip()}}}`"
     return instead("section", name.partition("(")[0])

@@ -88,11 +88,17 @@ def read_repeat(
         if (loop := _RANGE.search(given)) is not None:
             given = loop[1]
         counter = "i"
+        first = "0"
         if isinstance(node, Mapping):
             told = {key: one.text for key, one in node.entries.items() if isinstance(one, Scalar)}
             given = next((told[key] for key in _COUNTS if told.get(key, "").isdecimal()), given)
+            first = told.get("from", told.get("start", "0"))
+            if "to" in told and first.isdecimal() and told["to"].isdecimal() and first != "0":
+                given = str(int(told["to"]) - int(first) + 1)
             counter = next((told[key] for key in _COUNTERS if told.get(key, "").isidentifier()), counter)
         help = f"write `repeat: {{count: {given}, as: {counter}}}`"
+        if first.isdecimal() and first != "0":
+            help += f", and `{counter} + {first}` for `{counter}` in its fields, for copies are numbered from 0"
         if isinstance(node, Sequence):
             help = (
                 "all are one count: write `repeat: {count: 9, as: k}`, and `mod(k, 3)` and `floor(k/3)` in its fields"

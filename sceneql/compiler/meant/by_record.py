@@ -220,7 +220,7 @@ def _of_force(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> st
     fields = list(quantities_fitting(reader, value, force.model_fields))
     components = dict(force.model_fields).get("components")
     text = value.span.text
-    if components is not None and (size := in_si(text)):
+    if components is not None and len(size := in_si(text)) in (1, 3):
         fields, many = ["components"], [f"{number:g}" for number in size]
         text = f"[{', '.join(many if len(many) > 1 else ['0', many[0], '0'])}]"
     if len(fields) != 1:

@@ -19,6 +19,7 @@ UNSURE = ("size", "width", "diameter", "extent", "from", "start", "begin", "star
 """Names whose value is not the one that an example by a name that means the same shows: a diameter is two radii."""
 
 HALF = "half of"
+_HALF_OF = re.compile(rf"({HALF} [^`]*) `(\w+): [^`]*`")
 """What stands in a help whose example is half of what the author wrote."""
 DIRECTION = "direction"
 """A field whose numbers have no unit, and point as a place does."""
@@ -31,6 +32,8 @@ def with_own(help: str, name: str, text: str, *, beside: bool = False) -> str:
     same; likewise the value of a field ``beside`` the one that the help is for.
     """
     own = _type(text)
+    if HALF in help and own != ((), LENGTH, LENGTH.kind) and not beside:  # of another example's number it is not half
+        return _HALF_OF.sub(r"\1 `\2`", help)
     if own is None or (name in UNSURE and HALF not in help):
         return help
     found = [one for shown in _SHOWN.finditer(help) for one in _EXAMPLE.finditer(help, *shown.span())]

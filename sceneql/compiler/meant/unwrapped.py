@@ -36,8 +36,10 @@ def unwrapped(fields: Node | None, family: str, catalogue: Catalogue) -> str | N
     if cls is None:
         return None
     known = [written_name(name) for name in cls.model_fields]
-    named = {name if name in known else same_as(name, known): text for name, text in told.items()}
-    joined = ", ".join(f"{name}: {text}" for name, text in named.items() if name is not None)
+    meant = [name if name in known else same_as(name, known) or name for name in told]
+    # Of several that mean one field each keeps its name, to be told of by itself.
+    named = [name if meant.count(one) > 1 else one for name, one in zip(told, meant, strict=True)]
+    joined = ", ".join(f"{name}: {text}" for name, text in zip(named, told.values(), strict=True))
     text = f"{{{word}: {{{joined}}}}}" if joined else word
     return text if "\n" not in text and len(text) <= SHOWN else None
 

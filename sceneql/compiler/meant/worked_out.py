@@ -11,6 +11,8 @@ from sceneql.language.tree import Mapping, Sequence
 
 LENSES, FILM = ("focal_length", "lens", "focallength"), 24.0
 """Fields of other programs for a lens, and the height of its film [mm]."""
+LEAST, MOST = 4.0, 2000.0
+"""Shortest and longest lens that there is [mm]."""
 CONE = (
     ("radius_top", "top_radius", "radiustop", "r2"),
     ("radius_bottom", "bottom_radius", "radiusbottom", "r1"),
@@ -49,8 +51,8 @@ def _lens(name: str, node: Mapping, known: Collection[str]) -> str | None:
     length = numbers_with_unit(node.entries[name].span.text)
     if name not in LENSES or "field_of_view" not in known or length is None or length[1] not in ("", "mm"):
         return None
-    if length[0][0] <= 0.0:
-        return None
+    if not LEAST <= length[0][0] <= MOST:
+        return None  # it is in meters
     angle = degrees(2.0 * atan(FILM / 2.0 / length[0][0]))
     return f"a lens of {length[0][0]:g} mm sees, upright, `field_of_view: {angle:.3g} deg`: write that"
 
@@ -156,7 +158,8 @@ def _progress(name: str, node: Mapping, known: Collection[str]) -> str | None:
 
 def _pulling(name: str, node: Mapping, known: Collection[str]) -> str | None:
     """The help for a mass that pulls, of which the strength is told."""
-    mass = in_si(node.entries[name].span.text)
+    text = node.entries[name].span.text
+    mass = in_si(text) if text.rstrip().endswith("g") else []  # kg, g
     if name.lower() not in ("mass", "m") or {"strength", "position"} - {*known} or len(mass) != 1:
         return None
     return f"its strength is G times the mass: write `strength: {GRAVITATION * mass[0]:.6g} m^3/s^2`"
