@@ -8,6 +8,7 @@ which takes a twentieth of a factorization of a solid.
 """
 
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.linear.multifrontal import layout
 from sceneql.linear.multifrontal.single_precision_kernels import subtract_product
 from sceneql.linear.solver_kernels import solve_at
 from sceneql.linear.stage_kernels import (
@@ -49,8 +50,8 @@ def solve_by_kept(plan, a, jacobian, scales, store, r):
     room = store[store.size - 5 * m - 2 * plan[TILES] : store.size - m - 2 * plan[TILES]]
     x, left, way, product = room[:m], room[m : 2 * m], room[2 * m : 3 * m], room[3 * m :]
     near = store[store.size - m :]
-    if plan[SYMMETRIC] != 1:
-        return False
+    if plan[SYMMETRIC] != 1 or own[layout.IN_SINGLE] in (layout.NEW, layout.WEAK):
+        return False  # poor factors are refined by the matrix that they are not of
     right_side(plan, a, jacobian, scales, r, near)
     for k in range(m):
         left[k], x[k] = near[k], 0.0

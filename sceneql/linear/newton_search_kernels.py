@@ -231,6 +231,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             kept_factors, aged = keeps and regular, False
             if positive or (regular and not indefinite(plan, store)):
                 break
+            kept_factors = False  # they are of a matrix that is not positive
             positive, slow = True, 0
             patience = min(2 * patience, RARELY)
         memory[ITERATIONS] += 1.0
