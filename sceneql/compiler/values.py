@@ -166,6 +166,7 @@ def _by_component(
             inner = node.entries[key]
             if isinstance(inner, MappingNode) and any(one.endswith(" s") for one in inner.entries):
                 help = f"keys stand in `keys`: write `{what}: {{keys: {inner.span.text}}}`"
+                help = help if inner.flow else f"keys stand in `keys`: write `keys:` in place of `{key}:`"
             if key == what and len(node.entries) == 1:
                 help = f"write the value alone, `{node.entries[key].span.text}`"
             message = f"{what} has the components x, y, z, not '{key}'"

@@ -63,6 +63,8 @@ def output_meant(
         return f"an angle is told by places: `atan2({position}.x, -{position}.y)` is that of a pendulum at the origin"
     if of and (one := same_as(last, outputs) or (last if last in outputs else None)) is not None:
         return f"it is told of all of '{part}' together: write `{part}.{one}`"
+    if of and (others := [other for other in giving(wanted) if other != part]):
+        return f"'{next(iter(others))}' gives it: write `{next(iter(others))}.{wanted}`"
     one = next((name for name in outputs if name.endswith(f".{wanted}")), None)
     many = f", or all of them, `{part}.{wanted}s`" if f"{wanted}s" in outputs else ""
     return None if one is None else f"it has bodies by name: write `{part}.{one}`{many}"

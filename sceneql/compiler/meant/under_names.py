@@ -15,7 +15,7 @@ from sceneql.language.tree import Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import same_as
 from sceneql.quantities.instead import instead
 
-EQUATION = re.compile(r"(?:d\(?(\w+)\)?/dt|(\w+)'|(\w+)_dot)\s*=\s*(.+)")
+EQUATION = re.compile(r"(?:d\(?(\w+)\)?/dt|(\w+'')|(\w+)'|(\w+)_dot)\s*=\s*(.+)")
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 NAMES = ("name", "id")
 """Fields by which other programs name the items of a list."""
@@ -96,7 +96,7 @@ def equated(texts: Collection[str]) -> str | None:
     """Equations as a book writes them, ``x' = v``, as names with values; None of other texts."""
     pieces = [one.strip() for text in texts for one in re.split(r"[,;]\s+", text.strip("'\"")) if one.strip()]
     found = [EQUATION.fullmatch(one) for one in pieces]
-    told = [f"{one[1] or one[2] or one[3]}: {one[4]}" for one in found if one is not None]
+    told = [f"{next(filter(None, one.groups()))}: {one[5]}" for one in found if one is not None]
     return ", ".join(told) if told and len(told) == len(pieces) else None
 
 

@@ -46,6 +46,8 @@ def several_meant(node: Sequence, mark: Refers, entry: Entry, catalogue: Catalog
     names = [item.span.text for item in node.items]
     if len(names) == 1:
         return f"write `{names[0]}`"
+    if mark.family == "cameras":
+        return f"one camera films a picture; for two side by side write `layout: [[{', '.join(names)}]]` in its place"
     if "objects" not in (mark.family, mark.also):
         return None
     if any(cls is not None and "bodies" in cls.model_fields for cls in kinds) and all(
