@@ -28,7 +28,7 @@ MISTAKES = {one["mistake"]: one for one in yaml.safe_load(Path(__file__).with_na
 READ = [
     "objects: {ball: {sphere: {radius: 2m, position: {x: 1, y: 2}, color: grey, hidden: true}}, cube: box}",
     "objects: {ball: {sphere: {radius: 1 m*2**2/4, color: LightGrey, hidden: No}}}",
-    "clock: {end: 500ms}\nobjects: {ball: {sphere: {position: {keys: {0: 0 0 0, 1: 0 1 0}}}}}",
+    "clock: {end: 1500ms}\nobjects: {ball: {sphere: {position: {keys: {0: 0 0 0, 1: 0 1 0}}}}}",
     'objects: {ball: {sphere: {radius: "where(time == 1 s, 1 m, 2 m)"}}}',
     "define: {a: 1500 /s, b: 3 /m^2, c: 2 /(m*s), d: 5 /min, f: 0 1 0 /s, cold: -4 °C}\nobjects: {ball: sphere}",
     "objects: {ball: {sphere: {position: [0 m, 1 m*sin(6 rad/s*time), 0 m]}}}",

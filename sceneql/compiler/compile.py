@@ -25,7 +25,6 @@ from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.keys_beyond import warn_of_keys
 from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.left_behind import warn_of_left_behind
-from sceneql.compiler.passes.outside_box import warn_of_outside
 from sceneql.compiler.passes.outside_flows import report_outside_flows, warn_of_sections
 from sceneql.compiler.passes.overlaps import report_overlaps
 from sceneql.compiler.passes.probes import report_probes
@@ -34,7 +33,7 @@ from sceneql.compiler.passes.readable import report_unreadable
 from sceneql.compiler.passes.sizes import check_sizes
 from sceneql.compiler.passes.slopes import warn_of_values
 from sceneql.compiler.passes.stable_steps import warn_of_steps
-from sceneql.compiler.passes.unforced import warn_of_even, warn_of_slow, warn_of_unforced, warn_of_weak
+from sceneql.compiler.passes.unforced import warn_of_even, warn_of_outside, warn_of_slow, warn_of_unforced, warn_of_weak
 from sceneql.compiler.passes.unmoved import report_moving
 from sceneql.compiler.passes.unseen import warn_of_buried, warn_of_dim, warn_of_unseen
 from sceneql.compiler.passes.unshown import warn_of_unshown, warn_of_unused_cameras
