@@ -17,14 +17,14 @@ from sceneql.compiler.passes.contact_words import report_contacts, warn_of_nothi
 from sceneql.compiler.passes.doubts import warn_of_constants, warn_of_doubts
 from sceneql.compiler.passes.empty_holds import report_empty_holds
 from sceneql.compiler.passes.expand import expand
-from sceneql.compiler.passes.fall_through import warn_of_falling_through, warn_of_unpulled
+from sceneql.compiler.passes.fall_through import warn_of_falling_through, warn_of_unheld, warn_of_unpulled
 from sceneql.compiler.passes.far_joints import warn_of_far_joints, warn_of_unturned
 from sceneql.compiler.passes.fillings import check_fillings
 from sceneql.compiler.passes.insides import report_hollow, warn_of_open_meshes
 from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.keys_beyond import warn_of_keys
 from sceneql.compiler.passes.layouts import check_layouts
-from sceneql.compiler.passes.left_behind import warn_of_left_behind
+from sceneql.compiler.passes.left_behind import warn_of_left_behind, warn_of_one_place
 from sceneql.compiler.passes.outside_flows import report_outside_flows, warn_of_sections
 from sceneql.compiler.passes.overlaps import report_overlaps
 from sceneql.compiler.passes.probes import report_probes
@@ -110,8 +110,10 @@ def compile_script(
     warn_of_nothing_hit(tasks, groups, found)
     warn_of_falling_through(tasks, groups, checked.settings.clock.end, found)
     warn_of_unpulled(tasks, groups, found)
+    warn_of_unheld(tasks, groups, found)
     warn_of_two_models(checked.tasks, found)
     warn_of_left_behind(tasks, found)
+    warn_of_one_place(tasks, found)
     warn_of_z_up(tasks, found)
     warn_of_z_high(tasks, found)
     warn_of_rising(tasks, found)

@@ -274,6 +274,9 @@ def _turned(node: Node, expr: Expr | None) -> str:
     if isinstance(node, Scalar) and expr is not None and not expr.type.shape:
         return f"write `{{about: y, angle: {node.text.strip()}}}`, or about another axis"
     if isinstance(node, SequenceNode) and len(literal) == 3 and all(isinstance(one, Number) for one in literal):
+        if all(isinstance(one, Number) and one.bare for one in literal):
+            unit = "rad" if any(isinstance(one, Number) and _in_radians(float(one.value)) for one in literal) else "deg"
+            return f"write `{{xyz: {' '.join(item.span.text for item in node.items)} {unit}}}`"
         return f"write `{{xyz: [{', '.join(item.span.text for item in node.items)}]}}`"
     if isinstance(node, MappingNode) and node.entries:
         given = {name: item.span.text for name, item in node.entries.items()}

@@ -156,6 +156,7 @@ class Reserved:
         """Keep the floats of an island that is laid out, without a copy: each march writes to its own."""
         self._numbers = [floats[: self._stored]]
         self._numbers[0].flags.writeable = False
+        self._room = np.zeros(0)
 
     def _joined(self) -> Floats:
         """The floats stored so far, in one array with room for more: many words ask, each after storing a few."""

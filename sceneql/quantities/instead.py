@@ -63,6 +63,8 @@ def unit_meant(text: str, has: Dimension | None, wanted: Dimension | None) -> st
         return f"it goes by time: write `{text}/s`"
     if wanted.kind == ANGLE.kind and (turning := _TURNING.fullmatch(text.strip())) is not None:
         return f"write `{turning[1] or turning[2]} deg/s*time`"
+    if wanted == TEMPERATURE and has.kind == ANGLE.kind and text.endswith("deg"):
+        return f"write `{text[:-3].strip()} °C`"
     if wanted == TEMPERATURE and text[-1:] in ("C", "F"):
         return f"write `{text[:-1].strip()} °{text[-1]}`"
     return None

@@ -116,6 +116,7 @@ OF_FORMULAS = (
     ),
     ("unit", "G Gs gauss Gauss", "a gauss is 1e-4 T: 500 G are `0.05 T`"),
     ("unit", "lines contours levels copies segments stars samples", "a number of them has no unit: write it alone"),
+    ("unit", "degrees degree", "an angle is in `deg`, a temperature in `°C`"),
     ("unit", "particles particle balls items pieces times", "what is counted has no unit: write `100 /s`"),
     (
         "unit",
@@ -125,7 +126,7 @@ OF_FORMULAS = (
     (
         "unit name",
         "framecount frame_count frame_current frame_number framenumber iframe",
-        "write `time`: 0.4 s at frame 12 of 30 a second",
+        "frames are counted by the time: write `30 Hz*time`, where 30 is the `fps` of the clock",
     ),
     (
         "unit name",

@@ -62,7 +62,12 @@ def manual(catalogue: Catalogue, word: str) -> str:
         pages += ["\n".join(_family(catalogue, family, wrong)), *wrong]
     if not pages:
         every = [w for family in catalogue.families for w in catalogue.words(family)]
-        hint = anywhere(word) or suggestion(word, [*every, *topics(), *OPERATIONS])
+        topic = next((one for one in topics() if one.removesuffix("s") == word), None)
+        hint = (
+            f"did you mean '{topic}'?"
+            if topic
+            else anywhere(word) or suggestion(word, [*every, *topics(), *OPERATIONS])
+        )
         raise Unsuitable(f"there is no word '{word}'" + (f"; {hint}" if hint else ""))
     return "\n\n".join(pages)
 

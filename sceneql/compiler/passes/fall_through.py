@@ -83,6 +83,25 @@ def warn_of_unpulled(tasks: Mapping[str, Task], groups: Sequence[Island], found:
                 found.warning("nothing-falls", text, task.span, help="write `forces: [gravity]`")
 
 
+def warn_of_unheld(tasks: Mapping[str, Task], groups: Sequence[Island], found: Diagnostics) -> None:
+    """Warn of each cloth with weight, alone in its island, that is pinned nowhere and touches nothing."""
+    for island in groups:
+        task = tasks[island.models[0]]
+        pinnable = {"pins", "facing"} <= type(task.kind).model_fields.keys()
+        if len(island.models) > 1 or not pinnable or getattr(task.kind, "pins", None) or island.contacts:
+            continue
+        forces = [tasks[force].kind for force, _ in island.forces]
+        told = any(one.code == "falls-through" and one.span == task.span for one in found.found)
+        if task.span is None or told or any(isinstance(one, Tie) for one in forces):
+            continue
+        if any(isinstance(one, Interaction) and one.weighs for one in forces):
+            text = f"nothing holds '{task.name}': it falls all the time"
+            help = (
+                "write `pins: [top_left, top_right]`, or let it fall onto what is there: `contacts: {touch: collision}`"
+            )
+            found.warning("nothing-holds", text, task.span, help=help)
+
+
 def pull_of(forces: Sequence[Interaction]) -> tuple[float, ...] | None:
     """The constant acceleration [m/s^2] by weights, where nothing else acts; else None."""
     total = (0.0, 0.0, 0.0)

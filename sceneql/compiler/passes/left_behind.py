@@ -32,6 +32,29 @@ def warn_of_left_behind(tasks: Mapping[str, Task], found: Diagnostics) -> None:
                 break
 
 
+def warn_of_one_place(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Warn of copies of an object that all stand in one place, where only one of them is seen."""
+    copies: dict[str, list[Task]] = {}
+    for task in tasks.values():
+        name, _, number = task.name.rpartition(".")
+        place = getattr(task.kind, "position", None)
+        still = isinstance(place, Value) and place.constant and place.span is not None
+        if (
+            isinstance(task.kind, Object)
+            and name
+            and number.isdecimal()
+            and still
+            and not (task.kind.hidden or task.original)
+        ):
+            copies.setdefault(name, []).append(task)
+    for name, several in copies.items():
+        looks = [task.kind.model_copy(update={"color": None, "material": None}) for task in several]
+        if len(several) > 1 and all(one == looks[0] for one in looks):
+            text = f"all {len(several)} copies of '{name}' stand in one place"
+            help = "let the copy's number stand in `position`, as `[i*(0.5 m), 0 m, 0 m]`"
+            found.warning("one-place", text, several[0].span, help=help)
+
+
 def _free(task: Task) -> Iterator[tuple[str, tuple[float, ...]]]:
     """Names and places of the masses of a model that are listed by name and not fixed."""
     if not isinstance(task.kind, Model) or task.kind.kinematic:

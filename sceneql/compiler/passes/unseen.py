@@ -13,6 +13,8 @@ from sceneql.quantities.expression import Link
 DIM = 3.0
 """[W] power of all lamps together below which a scene of some meters is nearly dark."""
 
+FAINT = 3e-3
+"""Brightness of what is white and nearest to a lamp below which a picture is black."""
 MASS = 1.0
 """[m] A bound of how far a mass of a model reaches from its place."""
 
@@ -153,3 +155,13 @@ def warn_of_dim(tasks: Mapping[str, Task], found: Diagnostics) -> None:
         bright = power / (4.0 * pi**2)
         text = f"'{lights[0].name}' is dim: what is white and 1 m away is {bright:.1g} as bright as white"
         found.warning("dim-light", text, lights[0].span, help="a lamp in a room has 60 W: write `power: 60 W`")
+        return
+    lamps = [_place(getattr(task.kind, "position", None)) for task in lights]
+    shown = [task for task in tasks.values() if isinstance(task.kind, Object) and not task.kind.grounds]
+    near = [place for task in shown for place in _places(task, tasks)]
+    away = [dist(lamp, place) for lamp in lamps if lamp is not None for place in near]
+    if power > 0.0 and None not in lamps and away and power / (2.0 * pi * min(away)) ** 2 < FAINT:
+        text = f"'{lights[0].name}' is {min(away):.3g} m away: what is white there is "
+        text += f"{power / (2.0 * pi * min(away)) ** 2:.1g} as bright as white"
+        help = "bring it nearer; a `sun` shines from any distance: `{sun: {direction: -1 -1 -1}}`"
+        found.warning("dim-light", text, lights[0].span, help=help)
