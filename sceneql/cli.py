@@ -143,6 +143,8 @@ def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path |
         found.extend(pipeline.errors_of_layout(graph))
     found.raise_errors()
     _warn(graph)
+    for warning in found.found:
+        click.echo(str(warning), err=True)
     click.echo(
         f"{scene}: ok, {len(graph.tasks)} parts" + (f", {len(graph.left_out)} not needed" if graph.left_out else "")
     )

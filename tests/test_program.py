@@ -54,6 +54,12 @@ def test_check_tells_the_mistakes_of_all_variants(tmp_path):
     assert said.index("radus") < said.index("1 s")
 
 
+def test_check_warns_of_what_a_variant_says_to_no_effect(tmp_path):
+    text = SPRING.format(step="0.01 s", end="0.1 s", solver="rk4", output=RECORD)
+    (tmp_path / "s.yaml").write_text(text + "variants: {stiff: {swing.stiffness: 200 N/m}}\n")
+    assert "no spring reads its `stiffness`" in sceneql(tmp_path, "check", "s.yaml")
+
+
 def test_a_broken_value_beside_variants_is_told_once(tmp_path):
     """The variants, of which the same mistake was not told again, went on without the part and ended in a KeyError."""
     text = STILL.replace("radius: 0.2 m", "radius: random(1, 3) s") + "models: {fall: {particles: {of: ball}}}\n"

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from colorsys import hls_to_rgb
 from dataclasses import replace
-from math import inf, pi
+from math import degrees, inf, pi
 
 from sceneql.compiler.css_colors import NAMED, css_color
 from sceneql.compiler.keyframes import read_keys
@@ -266,6 +266,10 @@ def _axis(node: Node, names: Names, found: Diagnostics) -> Expr | None:
 def _turned(node: Node, expr: Expr | None) -> str:
     """The help for a rotation that names neither its axis nor its order."""
     literal = () if expr is None else expr.items if isinstance(expr, Vector) else (expr,)
+    if expr is not None and expr.type.shape == (3,) and expr.type.dimension == PLAIN and "pi" in node.span.text:
+        turns = evaluate(expr, {}) if Value(expr).constant else ()
+        if turns:
+            return f"write `{{xyz: {' '.join(f'{degrees(one):.6g}' for one in turns)} deg}}`"
     if isinstance(node, Scalar) and all(isinstance(one, Number) for one in literal) and len(literal) in (1, 3):
         written = node.text.strip()
         unit = "rad" if any(isinstance(one, Number) and _in_radians(float(one.value)) for one in literal) else "deg"

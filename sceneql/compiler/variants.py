@@ -17,6 +17,8 @@ from sceneql.language.script import compose_script
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, told_once
 from sceneql.quantities.span import Span
 
+SHOWN = ("unstable-step",)
+"""Warnings of what variants are often there to show."""
 MOST = 20
 """Largest number of variants that are looked at where the script has errors itself."""
 
@@ -24,7 +26,10 @@ MOST = 20
 def check_variants(
     graph: SimulationGraph, path: Path, variant: str | None, sets: Sequence[str], words: Path | None
 ) -> list[Diagnostic]:
-    """The errors of the variants (only of the chosen one, if any) and studies of a script without errors."""
+    """The errors of the variants (only of the chosen one, if any) and studies of a script without errors.
+
+    And the warnings of what stands in the variants themselves.
+    """
     tries: list[tuple[str | None, Sequence[str | Patch]]] = []
     tries += [(name, sets) for name in graph.variants.names if variant is None]
     tries += [(variant, (*sets, *more)) for study in graph.settings.studies.values() for more in alone(study)]
@@ -36,7 +41,10 @@ def check_variants(
     for name, patches in tries:
         found = Diagnostics()
         try:
-            compile_script(composed.script(name, patches, found), catalogue, found, parsed=parsed)
+            made = compile_script(composed.script(name, patches, found), catalogue, found, parsed=parsed)
+            section = composed.root.entries.get("variants")
+            own = [one for one in made.warnings if section is not None and _within(one, section.span)]
+            wrong.append([one for one in own if one.code not in SHOWN])
         except ScriptError as error:
             wrong.append(error.diagnostics)
     return told_once(wrong)
@@ -68,5 +76,5 @@ def errors_in_variants(
 
 
 def _within(one: Diagnostic, place: Span) -> bool:
-    """Whether an error stands in a part of the script."""
+    """Whether an error or a warning stands in a part of the script."""
     return one.span is not None and one.span.source is place.source and place.start <= one.span.start <= place.end

@@ -151,7 +151,8 @@ def _beside(name: str, node: Mapping, known: Collection[str]) -> str | None:
         return None
     away = "" if numbers is None else f" + [{', '.join(f'{one:g} {numbers[1]}'.rstrip() for one in numbers[0])}]"
     link = f'"{other}.position{away}"' if away else f"{other}.position"
-    return f"what goes along with '{other}' is linked to its place: write `position: {link}`; a `group` turns both"
+    linked = f"what goes along with '{other}' is linked to its place: write `position: {link}`"
+    return f"{linked}; if it is a group this goes to its `children`"
 
 
 def _whirling(name: str, node: Mapping, known: Collection[str]) -> str | None:

@@ -24,7 +24,7 @@ from sceneql.bodies.nets import (
 )
 from sceneql.bodies.solid_lattice import Filling
 from sceneql.bodies.springs import SpringModel, pin_problems
-from sceneql.kinds import Damping, FixedMass, Gives, Problem, Ref, Stiffness, field, quantity_type
+from sceneql.kinds import Clock, Damping, Doubt, FixedMass, Gives, Problem, Ref, Stiffness, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation, StaticMass, StaticScene
 from sceneql.language.repeat import copy_meant
 from sceneql.quantities import dimension as dim
@@ -110,6 +110,16 @@ class MassSpring(SpringModel):
         if self.masses is not None and not self.masses:
             yield Problem("no masses are given", ("masses",))
         yield from pin_problems(self.pins, (*known, *PLACES.get(given[0], ())), self.mass_count())
+
+    def doubts(self, clock: Clock) -> Iterator[Doubt]:
+        """A stiffness or damping for springs that say nothing else, where each says its own."""
+        for name in ("stiffness", "damping") if self.masses and self.springs else ():
+            place = getattr(self, name).span
+            if place is not None and all(getattr(spring, name) is not None for spring in self.springs):
+                text = f"no spring reads its `{name}`: each has one of its own"
+                yield Doubt(
+                    "unread-value", text, place, f"leave out one of the two; a spring's own is `springs.0.{name}`"
+                )
 
     def mass_count(self) -> int | None:
         """Number of masses; None of a solid."""
