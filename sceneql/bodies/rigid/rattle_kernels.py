@@ -1,11 +1,11 @@
 # mypy: ignore-errors
 """Drifts of splittings that end where ties hold: the kicks before them get impulses along the ties where they began.
 
-With the velocities closed behind the step (tie_kernels.settle) this is RATTLE (Andersen 1983, J. Comput. Phys. 52,
+With the velocities closed behind the step (tie_settle_kernels) this is RATTLE (Andersen 1983, J. Comput. Phys. 52,
 24-34), symplectic and reversible in time where forces depend on the places alone.
 """
 
-from sceneql.bodies.rigid.tie_kernels import CLOSED, survey
+from sceneql.bodies.rigid.tie_kernels import survey
 from sceneql.bodies.rigid.tie_matrix_kernels import (
     KEPT,
     KEPT_AT,
@@ -32,6 +32,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     SCRATCH,
     VELOCITY,
 )
+from sceneql.bodies.rigid.tie_settle_kernels import CLOSED
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_FREE_MOTION, free_motion_at
 from sceneql.stepping.splitting_kernels import drift

@@ -115,7 +115,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
 
     assembly.term("tie", f"{KERNELS}:hold", ints, slopes)
     assembly.tie_ints = ints
-    assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
+    assembly.after_step("sceneql.bodies.rigid.tie_settle_kernels:settle", ints, samples=True)
     if free:  # a prescribed motion is known at the end of a step only
         assembly.tied_drift("sceneql.bodies.rigid.rattle_kernels:end_tied", ints)
 

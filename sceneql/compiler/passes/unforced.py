@@ -17,8 +17,9 @@ from sceneql.kinds import Contact, Formula, Interaction, Kind, Model, Object, Ti
 from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Expr, Number
+from sceneql.quantities.expression import Number
 
+Ends = list[tuple[float, float]]
 UNSEEN = 0.01
 """Angle [rad] by which masses turn about each other, below which nobody sees their pull."""
 MANY = 1e12
@@ -73,49 +74,43 @@ def warn_of_unforced(tasks: Mapping[str, Task], groups: Sequence[Island], found:
 
 def warn_of_even(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     """Warn of fields in a box whose formula for the start is one number at all places, where nothing comes in."""
-    for task in tasks.values():
-        kind: Any = task.kind
-        initial, size = getattr(kind, "initial", None), getattr(kind, "size", None)
-        if not isinstance(kind, Model) or not isinstance(initial, Formula) or not size or kind.flows:
+    for task, initial, ends in _fields(tasks):
+        if isinstance(initial.expr, Number) or any(getattr(task.kind, field, None) for field in CHANGING):
             continue
-        if isinstance(initial.expr, Number) or any(getattr(kind, field, None) for field in CHANGING):
-            continue
-        corner = getattr(kind, "corner", None) or (0.0,) * len(size)
-        values = set(_sampled(initial.expr, corner, size))
-        if len(values) == 1:
-            ends = ", ".join(f"{a} from {c:g} to {c + s:g}" for a, c, s in zip("xyz", corner, size, strict=False))
+        values = {*_sampled(initial, ends)}
+        if len(values) == 1 and None not in values:
             text = f"'{task.name}' is {values.pop():g} at all places at the start, and nothing comes in: it stays so"
-            help = f"in its box goes {ends}: let the formula differ there"
+            help = f"in its box goes {_box(ends)}: let the formula differ there"
             found.warning("nothing-moves", text, initial.span or task.span, help=help)
 
 
-def _sampled(expr: Expr, corner: Sequence[float], size: Sequence[float]) -> Iterator[float]:
-    """A formula's values at places of a box, on a lattice; none where it reads more than the place."""
-    known = {"x": 0.0, "y": 0.0, "z": 0.0, "t": 0.0}
+def _fields(tasks: Mapping[str, Task]) -> Iterator[tuple[Task, Formula, Ends]]:
+    """Models of fields in boxes that start by a formula, with this and the ends of the box along each axis [m]."""
+    for task in tasks.values():
+        kind: Any = task.kind
+        initial, size = getattr(kind, "initial", None), getattr(kind, "size", None)
+        if isinstance(kind, Model) and isinstance(initial, Formula) and size and not kind.flows:
+            corner = getattr(kind, "corner", None) or (0.0,) * len(size)
+            yield task, initial, [(low, low + side) for low, side in zip(corner, size, strict=True)]
 
-    def look_up(node: Any) -> float:
-        return known[node.name]
 
-    steps = [[c + s * (k + 0.5) / FINE for k in range(FINE)] for c, s in zip(corner, size, strict=True)]
+def _box(ends: Ends) -> str:
+    return ", ".join(f"{axis} from {low:g} to {high:g}" for axis, (low, high) in zip("xyz", ends, strict=False))
+
+
+def _sampled(initial: Formula, ends: Ends) -> Iterator[float | None]:
+    """A formula's values at places of a box, on a lattice; None, and then no more, where one is not known."""
+    steps = [[low + (high - low) * (k + 0.5) / FINE for k in range(FINE)] for low, high in ends]
     for place in product(*steps):
-        known |= zip("xyz", place, strict=False)
-        try:
-            yield float(evaluate(expr, look_up))
-        except (AttributeError, KeyError, TypeError, ValueError, ArithmeticError):
-            yield from (0.0, 1.0)  # it is not known
+        yield (value := _value(initial, place))
+        if value is None:
             return
 
 
 def warn_of_outside(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     """Warn of each field in a box that is exp(-(x - a)^2 ...) at the start, of a place a outside of the box."""
-    for task in tasks.values():
-        kind: Any = task.kind
-        initial, size = getattr(kind, "initial", None), getattr(kind, "size", None)
-        if not isinstance(kind, Model) or not isinstance(initial, Formula) or not size or kind.flows:
-            continue
-        corner = getattr(kind, "corner", None) or (0.0,) * len(size)
-        top = _top(initial, corner, size)
-        ends = [*zip(corner, (c + s for c, s in zip(corner, size, strict=True)), strict=True)]
+    for task, initial, ends in _fields(tasks):
+        top = _top(initial, ends)
         if top is None or all(low <= at <= high for at, (low, high) in zip(top, ends, strict=True)):
             continue
         nearest = [min(max(at, low), high) for at, (low, high) in zip(top, ends, strict=True)]
@@ -124,17 +119,16 @@ def warn_of_outside(tasks: Mapping[str, Task], found: Diagnostics) -> None:
             continue
         text = f"'{task.name}' is at most {inside:.2g} in its box at the start, and {outside:.3g}"
         text += f" at {', '.join(f'{at:.3g}' for at in top)} outside"
-        told = ", ".join(f"{axis} from {low:g} to {high:g}" for axis, (low, high) in zip("xyz", ends, strict=False))
-        help = f"places in formulas are in meters, here {told}: put its middle there"
+        help = f"places in formulas are in meters, here {_box(ends)}: put its middle there"
         found.warning("outside-box", text, initial.span or task.span, help=help)
 
 
-def _top(initial: Formula, corner: Sequence[float], size: Sequence[float]) -> tuple[float, ...] | None:
+def _top(initial: Formula, ends: Ends) -> tuple[float, ...] | None:
     """Where the formula is largest if its logarithm is of second order along each axis; None where it is not known."""
-    middle = [c + s / 2 for c, s in zip(corner, size, strict=True)]
+    middle = [(low + high) / 2 for low, high in ends]
     top = list(middle)
-    for k, side in enumerate(size):
-        step, logs = STEP * side, []
+    for k, (low, high) in enumerate(ends):
+        step, logs = STEP * (high - low), []
         for m in (-1, 0, 1):
             value = _value(initial, [at + (m * step if j == k else 0.0) for j, at in enumerate(middle)])
             if value is None or value <= 0.0:

@@ -5,7 +5,6 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_kernels import shift_mover
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_A,
     AT_FORCE,
@@ -21,6 +20,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     put,
     see,
 )
+from sceneql.bodies.rigid.tie_settle_kernels import shift_mover
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.rigid_exact.contact_kernels import (
     AIMED,

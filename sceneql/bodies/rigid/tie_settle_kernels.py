@@ -1,0 +1,118 @@
+# mypy: ignore-errors
+"""Ties closed after a step, in place and in speed, each by the least change in energy."""
+
+from numba import types
+
+from sceneql.bodies.rigid.tie_kernels import balance, clear, survey
+from sceneql.bodies.rigid.tie_matrix_kernels import MOVED_AT, MOVERS, MOVERS_AT, ROWS, ROWS_AT
+from sceneql.bodies.rigid.tie_rows_kernels import (
+    AT_A,
+    AT_C,
+    AT_J,
+    AT_OPEN,
+    AT_PUSHED,
+    AT_SIZE,
+    AT_SPEED,
+    AT_TWIST,
+    AT_V,
+    AT_W,
+    FIRST,
+    MOMENTUM,
+    MOVED,
+    MOVER,
+    POSITION,
+    ROTATION,
+    ROW_INTS,
+    SCRATCH,
+    VELOCITY,
+)  # fmt: skip
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.system.signatures_kernels import AFTER_STEP, A, I, N
+
+CLOSED = 1e-14
+"""Gap of a row, against the numbers that it is the difference of, below which it is rounding."""
+MOST_CLOSINGS = 6
+OPENED = 1e-6
+"""Such a gap from which a tie counts as one that cannot be held."""
+
+
+@lean_inlined
+def open_by(floats, ints, at):
+    """The largest gap of a row, against the numbers that it is the difference of."""
+    worst = 0.0
+    for k in range(ints[ROWS]):
+        to = ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH]
+        worst = max(worst, abs(floats[to + at]) / max(floats[to + AT_SIZE], 1e-300))
+    return worst
+
+
+@lean(types.void(A, A, I, N, N))
+def shift_mover(y, floats, ints, at, to):
+    """Move the body of the mover of ints[at:] by the change of place and rotation at floats[to + AT_A:]."""
+    x, q = ints[at + POSITION], ints[at + ROTATION]
+    if x < 0:
+        return
+    for c in range(3):
+        y[x + c] += floats[to + AT_A + c]
+    if q >= 0:
+        ux, uy, uz = 0.5 * floats[to + AT_TWIST], 0.5 * floats[to + AT_TWIST + 1], 0.5 * floats[to + AT_TWIST + 2]
+        a, b, c, d = y[q], y[q + 1], y[q + 2], y[q + 3]
+        # q + (0, u) q, of the same length.
+        e, f = a - (ux * b + uy * c + uz * d), b + ux * a + uy * d - uz * c
+        g, h = c + uy * a + uz * b - ux * d, d + uz * a + ux * c - uy * b
+        scale = ((a * a + b * b + c * c + d * d) / (e * e + f * f + g * g + h * h)) ** 0.5
+        y[q], y[q + 1], y[q + 2], y[q + 3] = e * scale, f * scale, g * scale, h * scale
+
+
+@lean(types.void(A, A, I))
+def shift(y, floats, ints):
+    """Move the bodies by the movers' changes of place and rotation."""
+    for m in range(ints[MOVERS]):
+        shift_mover(y, floats, ints, ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m)
+
+
+@lean(AFTER_STEP, inner=True)
+def settle(t0, t1, y0, rate0, y1, floats, ints):
+    """Closes the ties: places and rotations first, then velocities, each by the least change (in energy)."""
+    changed, gap = False, 0.0
+    for _ in range(MOST_CLOSINGS):
+        survey(t1, y1, floats, ints)
+        gap = open_by(floats, ints, AT_C)
+        if gap <= CLOSED:
+            break
+        clear(floats, ints)
+        balance(floats, ints, AT_C, AT_SIZE)
+        shift(y1, floats, ints)
+        changed = True
+    if t1 > t0 and gap > OPENED:
+        for k in range(ints[ROWS]):
+            to = ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH]
+            if abs(floats[to + AT_C]) > OPENED * floats[to + AT_SIZE]:
+                floats[to + AT_OPEN] = max(floats[to + AT_OPEN], abs(floats[to + AT_C]))
+    worst = 0.0
+    for k in range(ints[ROWS]):
+        row = ints[ROWS_AT] + ROW_INTS * k
+        to = ints[row + SCRATCH]
+        size = 0.0
+        for side in range(2):
+            mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side]
+            for c in range(3):
+                size += abs(floats[to + AT_J + 6 * side + c] * floats[mover + AT_V + c])
+                size += abs(floats[to + AT_J + 6 * side + 3 + c] * floats[mover + AT_W + c])
+        floats[to + AT_SIZE] = size
+        if abs(floats[to + AT_SPEED]) > worst * size:
+            worst = abs(floats[to + AT_SPEED]) / size
+    if worst > CLOSED:
+        clear(floats, ints)
+        balance(floats, ints, AT_SPEED, AT_SIZE)
+        for m in range(ints[MOVERS]):
+            at = ints[MOVERS_AT] + MOVER * m
+            mover = ints[MOVED_AT] + MOVED * m
+            if ints[at + POSITION] >= 0:
+                for c in range(3):
+                    y1[ints[at + VELOCITY] + c] += floats[mover + AT_A + c]
+                if ints[at + ROTATION] >= 0:
+                    for c in range(3):
+                        y1[ints[at + MOMENTUM] + c] += floats[mover + AT_PUSHED + 3 + c]
+        changed = True
+    return changed
