@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import time
+import tracemalloc
 from contextlib import suppress
 from pathlib import Path
 
@@ -24,6 +25,7 @@ from renderers.encoders import mp4
 from sceneql import cli, exits, files, interrupts, pipeline
 from sceneql.compiled.kernels import MODE
 from sceneql.failure import OutOfMemory, RunFailure, Unsuitable, failing_as, starved
+from sceneql.language.include import read_source
 
 KILLS = int(os.environ.get("SCENEQL_KILLS", "2"))
 FILM = """
@@ -210,6 +212,16 @@ def test_a_want_of_memory_tells_where_and_what_takes_less(tmp_path):
     assert "when making the frame" in said
     assert "--> s.yaml:" in said
     assert "help: a smaller `size` of 'still' takes less" in said
+
+
+def test_a_script_takes_no_more_memory_than_it_is_long(tmp_path):
+    """It took 32 MB, and so ran out of memory where there was enough."""
+    (tmp_path / "s.yaml").write_text(STILL)
+    tracemalloc.start()
+    read_source(tmp_path / "s.yaml")
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 1_000_000
 
 
 @pytest.mark.skipif(MODE == "uncompiled", reason="nothing is compiled")

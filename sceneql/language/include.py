@@ -46,7 +46,8 @@ def _read(path: Path, name: str) -> Source:
     if not path.is_file():
         raise FileNotFoundError(None, "it is not a file" if path.exists() else "there is no such file")
     with path.open("rb") as stream:
-        return source_of(name, stream.read(MOST_BYTES + 1))
+        # Memory for as many bytes as are asked for is taken at once, whatever there is to read.
+        return source_of(name, stream.read(min(path.stat().st_size, MOST_BYTES) + 1))
 
 
 def read_included(root: Mapping, name: str, read: Read, found: Diagnostics) -> list[Mapping]:
