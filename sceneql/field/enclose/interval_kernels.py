@@ -42,7 +42,12 @@ def hull4(p, q, r, s):
 
 @inlined
 def products(a, b, c, d):
-    """Interval of [a, b] [c, d]; zero times an infinite bound is zero, since the values themselves are finite."""
+    """Interval of [a, b] [c, d]; zero times an infinite bound is zero, since the values themselves are finite.
+
+    Of exactly zero the product is exactly that: so is a branch of `where` that is not taken.
+    """
+    if (a == 0.0 and b == 0.0) or (c == 0.0 and d == 0.0):
+        return 0.0, 0.0
     p = a * c
     q = a * d
     r = b * c
