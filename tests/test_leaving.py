@@ -119,3 +119,10 @@ def test_drops_that_fall_past_what_they_come_from_are_let_go(tmp_path, pipe, dee
     told = [one.message for one in render(graph, folder=tmp_path).warnings]
     assert len(told) == (not deep)
     assert all("masses of 'water' leave for good" in one for one in told)
+
+
+def test_a_scene_in_which_nothing_is_ever_there_has_its_film(tmp_path):
+    """Births that begin behind the clock's end: the run failed with words of NumPy's at the default floor."""
+    script = "models: {rain: {particles: {emit: {rate: 20 /s, start: 12 s}}}}\nclock: {end: 1 s, fps: 4}\n"
+    (tmp_path / "scene.yaml").write_text(script + "outputs: {film: {images: {size: 64 36}}}\n")
+    assert render(load(tmp_path / "scene.yaml"), folder=tmp_path).files

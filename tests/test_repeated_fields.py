@@ -134,3 +134,14 @@ def test_braces_elsewhere_are_told_with_what_they_are_for(tmp_path):
     ((message, _, help),) = told(tmp_path, 'objects: {a: {sphere: {radius: "0.1 m*{i}"}}}')
     assert message == "'{' cannot stand in an expression"
     assert "of a copy by `repeat`" in help
+
+
+def test_a_condition_of_a_copys_number_answers_yes_or_no(tmp_path):
+    """`fixed: i == 0` holds the first bead alone; without one it was refused."""
+    one = "mass: 0.1 kg*(1 + i)}"
+    assert one in CHAIN
+    graph = load(tmp_path, CHAIN.replace(one, f"{one[:-1]}, fixed: i == 0}}"))
+    masses = graph.tasks["chain"].kind.masses
+    assert {name: mass.fixed for name, mass in masses.items()} == {
+        "hook": True, "bead.0": True, "bead.1": False, "bead.2": False,
+    }  # fmt: skip

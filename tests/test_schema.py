@@ -53,6 +53,8 @@ def problems(value, rule, at="script"):
                 found += [] if value in wanted else [f"{at}: {value!r} is none of {wanted}"]
             case "const":
                 found += [] if value == wanted else [f"{at}: {value!r} is not {wanted!r}"]
+            case "pattern" if isinstance(value, str):
+                found += [] if re.search(wanted, value) else [f"{at}: {value!r} does not match {wanted!r}"]
             case "type":
                 types = [wanted] if isinstance(wanted, str) else wanted
                 found += [] if any(fits(value, t) for t in types) else [f"{at}: {value!r} is none of {types}"]
@@ -68,7 +70,7 @@ def problems(value, rule, at="script"):
                 found += [p for k, item in enumerate(value) for p in problems(item, wanted, f"{at}[{k}]")]
             case "required" if isinstance(value, dict):
                 found += [f"{at} lacks {key}" for key in wanted if key not in value]
-            case "properties" | "additionalProperties" | "items" | "required":
+            case "properties" | "additionalProperties" | "items" | "required" | "pattern":
                 pass
             case _:
                 assert keyword in NOTES, f"unknown keyword {keyword} in {at}"

@@ -41,6 +41,7 @@ from sceneql.quantities.instead import instead
 from sceneql.quantities.span import Span
 
 FALSE = ("false", "no", "off")
+COMPARISON = re.compile(r"[<>]|[=!]=")
 
 
 @dataclass(frozen=True, slots=True)
@@ -368,6 +369,10 @@ class Reader:
         text = node.text.lower() if isinstance(node, Scalar) else ""
         if text in TRUE or text in FALSE:
             return text in TRUE
+        if isinstance(node, Scalar) and COMPARISON.search(text):  # `i == 0` in copies
+            value = self._some(values.read_value(node, values.PLAIN_NUMBER, what, self.names, self.found))
+            if value.constant:
+                return bool(value.number())
         help = f"write `{what}: yes` or `{what}: no`"
         raise self._fail("unknown-choice", f"{what} is yes or no, not '{text}'", node.span, help)
 

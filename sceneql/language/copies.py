@@ -13,6 +13,7 @@ from collections.abc import Mapping as Table
 from dataclasses import dataclass, replace
 from typing import Final
 
+from sceneql.language.one_line import one_line
 from sceneql.language.repeat import MOST_COPIES, Repeat, read_repeat
 from sceneql.language.scope import Broken, Scope
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, hole
@@ -64,6 +65,12 @@ class Copies:
         if keyed or not (isinstance(item, Mapping) and KEY in item.entries and len(item.entries) > 1):
             yield name, self._walked(item, scope)
             return
+        for key in item.entries:
+            if _BRACES.search(key):  # `masses: {repeat: ..., "m{i}": {...}}`
+                message = f"'{key}' cannot be a name: `repeat` stands inside of what it repeats"
+                self.found.error("part-name", message, item.keys[key].span, help=_turned_round(name, key, item))
+                yield name, hole(item.span)
+                return
         times = read_repeat(item.entries[KEY], scope, self.define, self.lost, self.found, names=True)
         if times is None:
             yield name, hole(item.span)
@@ -83,6 +90,16 @@ class Copies:
             assert isinstance(copy, Mapping)
             copy.index = index
             yield f"{name}.{number}", copy
+
+
+def _turned_round(field: str, key: str, item: Mapping) -> str:
+    """The help for a name with a number in braces, beside a `repeat` that should stand within its entry."""
+    plain, fields = _BRACES.sub("", key).strip("_-.") or "one", item.entries[key]
+    number = "".join(found[0] for found in _BRACES.finditer(key))
+    inner = one_line(fields).removeprefix("{").removesuffix("}") if isinstance(fields, Mapping) else "..."
+    entry = f"{plain}: {{repeat: {one_line(item.entries[KEY])}, {inner}}}"
+    line = f"{field}: {{{entry}}}" if field else f"{{{entry}}}"
+    return f'write `{line}`; the copies are {plain}.0, {plain}.1, ..., by their number `"{plain}.{number}"`'
 
 
 def in_braces(node: Node, scope: Scope) -> Node:

@@ -88,7 +88,9 @@ def _differ(args: Args, first: int, second: int, sentence: str) -> MismatchError
     for index, other in ((first, kinds[1]), (second, kinds[0])):
         arg = args[index]
         if isinstance(arg, Number) and arg.bare and other is not None and not other.plain:
-            better = index, format_quantity(arg.value, other)
+            # A number by name, such as a copy's, keeps its name.
+            named = arg.span is not None and arg.span.text.isidentifier()
+            better = index, f"{{}}*{format_quantity(1.0, other)}" if named else format_quantity(arg.value, other)
     message = sentence.format(a=describe(kinds[0]), b=describe(kinds[1]))
     return MismatchError("dimension-mismatch", message, first, second, better=better)
 

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import NONE, OPTIONAL
 from sceneql.compiler.meant.quantity_help import TRUE
-from sceneql.compiler.read import FALSE
+from sceneql.compiler.read import COMPARISON, FALSE
 from sceneql.kinds import Formula, Interpolated, Kind, Refers, SceneFile, Settings, written_name
 from sceneql.report.manual import type_text
 
@@ -125,7 +125,7 @@ def _type(annotation: Any, catalogue: Catalogue) -> dict[str, Any]:
         return {"type": [*TEXT["type"], "array"]}
     if base is bool:
         said = [written for word in (*TRUE, *FALSE) for written in (word, word.capitalize(), word.upper())]
-        return {"enum": [True, False, *said]}
+        return {"anyOf": [{"enum": [True, False, *said]}, {"type": "string", "pattern": COMPARISON.pattern}]}
     return TEXT
 
 

@@ -79,14 +79,15 @@ def let_go(paths: Paths, still: Iterable[tuple[Floats, Floats]]) -> tuple[list[L
     The box includes the leaving things while they are near; it is None where nothing leaves. ``still``: boxes of parts
     that do not move.
     """
+    seen = {name: boxes for name, boxes in paths.boxes.items() if any(len(low) for low, _ in boxes)}  # at some instant
     steady = {
         name: boxes
-        for name, boxes in paths.boxes.items()
+        for name, boxes in seen.items()
         if len(boxes) == len(paths.times) and len({len(low) for low, _ in boxes}) == 1
     }
-    loose = {name: boxes for name, boxes in paths.boxes.items() if name not in steady}
+    loose = {name: boxes for name, boxes in seen.items() if name not in steady}
     unmoved = list(still)
-    if len(paths.times) < 4 or not paths.boxes or (loose and not unmoved):
+    if len(paths.times) < 4 or not seen or (loose and not unmoved):
         return [], None
     level = min((float(low[1]) for low, _ in unmoved), default=-np.inf)
     found, whole = _fallen(paths.times, loose, level, [*unmoved, *(boxes[0] for boxes in steady.values())])

@@ -35,6 +35,8 @@ MOST_PAIRED = 256
 """Largest number of bodies of an observed island with forces between all pairs."""
 GAINED = 0.5
 """Energy gained, relative to the largest kinetic energy, from which on there is a warning."""
+UNSEEN = 1e-9
+"""Part of the bodies' extent that rounding may move them over the film."""
 MADE = 0.05
 """The same of rigid bodies in contact, which forbids gains: in thrown boxes mode `local` makes up to 0.006."""
 FORBIDDEN = 1e-6
@@ -63,6 +65,8 @@ class Balance:
     """Predicted seconds of an observation; 0 where it is made in any case."""
     stretch: dict[str, tuple[float, float]] = field(default_factory=dict)
     """By model, the largest (L - L0)/L0 of its springs at the start and over all times."""
+    rounding: float = 0.0
+    """Energy below which all motion is rounding [J]: that of speeds at which nothing would be seen to move."""
     at_start: Floats | None = None
     """(3,) momentum at the start [kg m/s]."""
 
@@ -187,7 +191,8 @@ class Watch:
             tasks, title = balance.island.graph.tasks, ", ".join(balance.models)
             span = tasks[balance.models[0]].span
             gained = max(balance.drifts, default=0.0)
-            if balance.closed and gained > (MADE if balance.touching else GAINED):
+            seen = bool(gained) and max(balance.energies) - balance.energies[0] > balance.rounding
+            if balance.closed and seen and gained > (MADE if balance.touching else GAINED):
                 at = balance.times[int(np.argmax(balance.drifts))]
                 message = (
                     f"the energy of {title} has grown from {balance.energies[0]:.3g} J to {max(balance.energies):.3g} J"
@@ -264,6 +269,8 @@ def _telling(island: IslandRun) -> tuple[str, ...]:
 
 def _note(balance: Balance, moment: Instant) -> None:
     read = moment.read
+    if not balance.times:
+        balance.rounding = _rounding(balance, moment)
     balance.times.append(moment.time)
     balance.energies.append(sum(float(read(name, "energy")) for name in balance.models))
     balance.kinetic = max(balance.kinetic, sum(float(read(name, "kinetic")) for name in balance.models))
@@ -278,6 +285,20 @@ def _note(balance: Balance, moment: Instant) -> None:
             now = float(read(name, "stretch"))
             first, most = balance.stretch.get(name, (now, now))
             balance.stretch[name] = first, max(most, now)
+
+
+def _rounding(balance: Balance, moment: Instant) -> float:
+    """Energy of all masses at the speed with which they would go through UNSEEN of their extent in the film [J]."""
+    from sceneql.bodies.bodies import masses, positions
+
+    total = 0.0
+    for name in balance.models:
+        state = moment.state(name)
+        if state.bodies is not None and state.bodies.count:
+            extent = float(np.ptp(positions(state.bodies, state), axis=0).max())
+            speed = UNSEEN * extent / max(balance.island.graph.settings.clock.end, 1e-300)
+            total += float(masses(state.bodies, state).sum()) * speed**2
+    return total
 
 
 def _impulse(balance: Balance, moment: Instant) -> float:

@@ -36,6 +36,8 @@ TYPES = ("type", "kind", "model", "name")
 """Fields by which other programs tell which of several groups the others are in."""
 WAYS = ("axis", "direction", "about", "dir")
 """Fields of other programs for a vector's size and its direction."""
+STARTS = ("initial", "start", "init", "value", "y0", "x0", "initialvalue", "initialcondition", "ic", "atstart")
+"""Fields of other programs for what a state starts with."""
 SIZES = ("width", "height", "depth", "length")
 TURNS = ("rotation", "turn")
 """Fields that turn a part."""
@@ -181,10 +183,24 @@ def _states(name: str, unknown: Sequenced[str], node: Mapping, known: Collection
     both = ("start", "rate")
     if not {*both} <= {*known} or {*both} & node.entries.keys() or any(same_as(one, both) for one in unknown):
         return None
+    if (entries := [_state(node.entries[one]) for one in unknown]) and all(entries):  # `y: {initial: 1, rate: -y}`
+        given = [(one, *pair) for one, pair in zip(unknown, entries, strict=True) if pair is not None]
+        start, rate = (", ".join(f"{one[0]}: {one[at]}" for one in given) for at in (1, 2))
+        return f"write `start: {{{start}}}` and `rate: {{{rate}}}`"
     rates = {one: (_RATE.fullmatch(one) or [one, ""])[1] for one in unknown if _RATE.fullmatch(one)}
     start = ", ".join(f"{one}: {node.entries[one].span.text}" for one in unknown if one not in rates)
     rate = ", ".join(f"{of}: {node.entries[one].span.text}" for one, of in rates.items())
     return f"write `start: {{{start or '...'}}}` and `rate: {{{rate or '...'}}}`"
+
+
+def _state(node: Node) -> tuple[str, str] | None:
+    """What a state starts with and its rate, of an entry that holds just these; None for other entries."""
+    fields = node.entries if isinstance(node, Mapping) else {}
+    starts = [one for one in fields if one.replace("_", "").lower() in STARTS]
+    if len(fields) != 2 or len(starts) != 1:
+        return None
+    (rate,) = fields.keys() - {*starts}
+    return fields[starts[0]].span.text, fields[rate].span.text
 
 
 def _slower(name: str, node: Mapping, known: Collection[str]) -> str | None:
