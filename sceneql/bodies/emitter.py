@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from sceneql import kinds
 from sceneql.bodies.filling.fill import Fill, chance_key, draws, filled
 from sceneql.island.memory import bounded
-from sceneql.kinds import Exceeds, Problem, Record, Value, field
+from sceneql.kinds import Clock, Doubt, Exceeds, Problem, Record, Value, field
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Number, Type, Vector, walk
 
@@ -98,6 +98,23 @@ class Emit(Record):
         "How many may live at once; the oldest goes for one too many. By default as many as will.", None, at_least=1
     )
     seed: int = field("Another number, another shower.", 0, at_least=0)
+
+    def doubts(self, clock: Clock) -> Iterator[Doubt]:
+        """Particles that are born after the film, one alone, or ones that die before they are seen."""
+        end, frame = clock.end, clock.speed / clock.fps
+        if self.start >= end:
+            text = f"none is born: they come from {self.start:g} s on, and the clock ends at {end:g} s"
+            yield Doubt(
+                "nothing-born", text, None, f"write an earlier `start`, or `clock: {{end: {self.start + end:g} s}}`"
+            )
+        elif (self.count or 2) > 1 and (min(self.until or end, end) - self.start) * self.rate < 1.0:
+            text = f"one alone is born until {end:g} s, at a rate of {self.rate:g} a second"
+            yield Doubt("nothing-born", text, None, f"write a larger rate, as `rate: {100.0 / end:.3g} /s`")
+        elif self.lifetime < frame:
+            text = f"they live for {self.lifetime:g} s, less than from frame to frame, {frame:.3g} s"
+            yield Doubt(
+                "short-lived", text, None, f"a second of the film is {clock.speed:g} s: `lifetime: {clock.speed:g} s`"
+            )
 
     def problems(self) -> Iterator[Problem]:
         """Problems: `until` not after `start`; more particles than memory allows."""

@@ -7,6 +7,8 @@ from dataclasses import replace
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import KEYS, check
+from sceneql.compiler.meaning.doubtful import warn_of_meaning, warn_of_unused_parts
+from sceneql.compiler.meaning.facts import Facts
 from sceneql.compiler.names import Parsed
 from sceneql.compiler.over_time import check_latest
 from sceneql.compiler.passes.as_balls import warn_of_balls, warn_of_two_models
@@ -120,12 +122,15 @@ def compile_script(
     warn_of_unseen(tasks, drawn, cameras, found)
     warn_of_buried(tasks, found)
     warn_of_dim(checked.tasks, found)
+    facts = Facts(script, checked.settings, tasks, groups, drawn, cameras)
+    warn_of_meaning(facts, found)
     found.raise_errors()
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)
     expected = {link.task for value in values_of(checked.settings.expect) for link in value.links}
     warn_of_unshown(tasks, order, expected, found)
     warn_of_unused_cameras(tasks, order, found)
     warn_of_unused_defines(script, found)
+    warn_of_unused_parts(facts, order, found)
     if not pruned:
         order = {**order, **{name: task for name, task in tasks.items() if name not in order}}
     return SimulationGraph(

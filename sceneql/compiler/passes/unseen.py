@@ -160,7 +160,7 @@ def warn_of_dim(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     shown = [task for task in tasks.values() if isinstance(task.kind, Object) and not task.kind.grounds]
     near = [place for task in shown for place in _places(task, tasks)]
     away = [dist(lamp, place) for lamp in lamps if lamp is not None for place in near]
-    if power > 0.0 and None not in lamps and away and power / (2.0 * pi * min(away)) ** 2 < FAINT:
+    if power > 0.0 and None not in lamps and away and power < FAINT * (2.0 * pi * min(away)) ** 2:
         text = f"'{lights[0].name}' is {min(away):.3g} m away: what is white there is "
         text += f"{power / (2.0 * pi * min(away)) ** 2:.1g} as bright as white"
         help = "bring it nearer; a `sun` shines from any distance: `{sun: {direction: -1 -1 -1}}`"

@@ -12,7 +12,7 @@ from sceneql.bodies import bodies as masses
 from sceneql.bodies.emitter import Aging, Emit
 from sceneql.bodies.filling.fill import Fill, filled
 from sceneql.island.memory import bounded
-from sceneql.kinds import Gives, Model, Moment, Problem, Record, Ref, Value, field, quantity_type
+from sceneql.kinds import Clock, Doubt, Gives, Model, Moment, Problem, Record, Ref, Value, field, quantity_type
 from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -103,6 +103,10 @@ class Particles(Model):
             yield Problem("the list of particles is empty", ("list",))
         if self.aging is not None and self.emit is None:
             yield Problem("only particles that are emitted have an age", ("aging",), at_key=True)
+
+    def doubts(self, clock: Clock) -> Iterable[Doubt]:
+        """Those of births."""
+        return () if self.emit is None else self.emit.doubts(clock)
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
