@@ -56,7 +56,7 @@ CLEAR = 0.9
 UNSEEN = 0.05
 """Least contraction that is assumed before two updates measure it."""
 TINY = 0.01
-"""Update, in units of the tolerance, below which a single one may end the iteration; of fields on elements, residual."""
+"""Update, in units of the tolerance, below which a single one may end the iteration; the residual, of a field."""
 LOADED, LOOSELY = 1e-3, 0.1
 """Part by which loads of friction may differ from those that the stage was solved with; the most, a hundred times the
 relative tolerance."""

@@ -19,7 +19,6 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from element_heat import Heat
-
 from sceneql.bodies.elements import filled
 
 END = 0.2
