@@ -89,9 +89,7 @@ def _settled(points: Floats, triangles: Any, fixed: Any, onto: Any) -> Floats:
     return points
 
 
-def flat_mesh(
-    points: Floats, triangles: Any, element: Simplex, pieces: Any, names: tuple[str, ...]
-) -> FieldMesh:
+def flat_mesh(points: Floats, triangles: Any, element: Simplex, pieces: Any, names: tuple[str, ...]) -> FieldMesh:
     """Mesh of triangles (t, 3) with points (n, 2) and straight sides; ``pieces``: of outer sides, in their order."""
     cells = triangles
     if element.degree == 2:
@@ -99,9 +97,7 @@ def flat_mesh(
         points = np.concatenate([points, 0.5 * (points[ends[:, 0]] + points[ends[:, 1]])])
         cells = np.concatenate([triangles, len(points) - len(ends) + which[:, [2, 0, 1]]], axis=1)
     own, _ = outer_sides(triangles)
-    return FieldMesh(
-        element, points, cells.astype(np.int64), cells.astype(np.int64), len(points), own, pieces, names
-    )
+    return FieldMesh(element, points, cells.astype(np.int64), cells.astype(np.int64), len(points), own, pieces, names)
 
 
 def _distinct(corners: Floats, spacing: float) -> Floats:

@@ -279,7 +279,7 @@ def _whole(inside: Inside, spacing: float, points: Floats) -> None:
     # Whatever is beside a place with a node near it has that node near it, too.
     some = np.full(held.shape, np.inf)[::2, ::2, ::2]
     some[held[::2, ::2, ::2]] = tree.query(grid[::2, ::2, ::2][held[::2, ::2, ::2]])[0]
-    beside = np.ix_(*(np.arange(n) // 2 for n in held.shape))
+    beside = np.ix_(*(np.arange(count) // 2 for count in counts))
     near = some[beside] + np.linalg.norm(grid - grid[::2, ::2, ::2][beside], axis=-1) <= THIN * spacing
     places = grid[held & ~near]
     if not len(places):
