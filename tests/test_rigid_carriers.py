@@ -12,6 +12,7 @@ SCRIPT = """
 objects:
   body: {{{body}}}
   group: {{group: {{children: [body]}}}}
+  floor: none
 models: {{fall: {{rigid: {{of: {of}, mass: 2 kg, spin: 1 0 2 rad/s}}}}}}
 forces: [gravity]
 cameras: {{eye: {{perspective: {{position: 0 1 4 m, look_at: 0 0.5 0 m}}}}}}
