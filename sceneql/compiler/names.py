@@ -21,7 +21,7 @@ from sceneql.quantities.literal import WORD
 from sceneql.quantities.operations import CONSTANTS
 from sceneql.quantities.other_words import OURS
 from sceneql.quantities.parser import parse_value
-from sceneql.quantities.spaced import declared
+from sceneql.quantities.spaced import at_rate, declared
 from sceneql.quantities.span import Span
 from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import continues_unit, in_words, unit_hint
@@ -275,18 +275,18 @@ class Names:
             message = f"there is no unit '{wanted}', and nothing is called so"
             meant = (parts[-1].lower(), *OURS.get(wanted, ()))
             constant = next((name for name in meant if name in CONSTANTS), None)
-            help = f"did you mean '{constant}'?" if constant else unit_hint(wanted) or suggestion(wanted, self.defines)
+            rated = at_rate(unit_hint(wanted), span.source.text)
+            help = f"did you mean '{constant}'?" if constant else rated or suggestion(wanted, self.defines)
             help = help or "units are such as m, s, kg, N or deg: `sceneql words units`"
             return Diagnostic("unknown-unit", message, span, help)
+        hint: str | None
         message, parts_known = f"nothing is called '{wanted}'", list(self.parts)
         if wanted in parts_known:
             message = f"'{wanted}' is a part, not a value"
             some = f"write one of its outputs, such as '{self._some_output(wanted)}'"
-            hint: str | None = (
-                some if self.outputs_of(wanted) != {} else instead("name", wanted) or "it has no values to read"
-            )
+            hint = some if self.outputs_of(wanted) != {} else instead("name", wanted) or "it has no values to read"
         else:
-            hint = self._copy_number(wanted) or instead("name", wanted)
+            hint = self._copy_number(wanted) or at_rate(instead("name", wanted), span.source.text)
             hint = hint or (output_alone(wanted, self._giving) if len(parts) == 1 < len(wanted) else None)
             hint = hint or suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time", *CONSTANTS])
             model = None if hint else self.model_of(parts[0])
@@ -316,6 +316,14 @@ class Names:
             return "no picture is read here: write a color, `skyblue`"
         if parts[1] in known:
             return f"a part is named without its section: write `{'.'.join(parts[1:])}`"
+        copies = [one for one in known if one.rpartition(".")[0] == parts[0]]
+        if copies and all(one.rpartition(".")[2].isdecimal() for one in copies):
+            first, last = copies[0], copies[-1].rpartition(".")[2]
+            rest = ".".join(parts[1:])
+            rest = rest if self.gives(f"{first}.{rest}") else rest.removesuffix("s") if rest.endswith("s") else rest
+            if self.gives(f"{first}.{rest}"):
+                numbers = f"its copies have numbers from 0 to {last}: write `{first}.{rest}`"
+                return f'{numbers}, in copies of another part `"{parts[0]}.{{i}}.{rest}"`'
         part = nearest(parts[0], known)
         if part is None:
             return "a link is a part's name, a dot and its value's, `ball.position`: `sceneql words links`"

@@ -121,7 +121,7 @@ OF_FORMULAS = (
     (
         "unit",
         "fps frames frame",
-        "a number of frames has no unit: `clock: {fps: 30}`; in a formula write `time`, which is 1 s at frame 30",
+        "a number of frames has no unit: `clock: {fps: 30}`; in a formula it is `30 Hz*time`",
     ),
     (
         "unit name",

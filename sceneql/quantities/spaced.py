@@ -21,6 +21,8 @@ _JOINS = tuple("+*/^<>=,")
 _INDEX = re.compile(r"\[\s*(\d+)\s*\](?!\.)")
 _COPY = re.compile(r"\[\s*([^\[\]{}\"']+?)\s*\](\.[\w.]+)?")
 AXES = "xyz"
+VECTORS = ("position", "velocity", "acceleration", "spin", "force", "torque", "momentum", "center")
+"""Outputs that are vectors of three."""
 _CALLED = re.compile(
     r"(?:new\s+)?(?:\w+\.)*\w*?(?:vec|vector|point|array|float3|tuple)\w*\(\s*[\[(]?([^()\[\],]+(?:,[^()\[\],]+){1,2})[\])]?\s*\)",
     re.IGNORECASE,
@@ -176,6 +178,19 @@ def by_frame(text: str, name: str, script: str) -> str | None:
     return f"a frame's number goes by the time: write `{re.sub(rf'[$]{name}(?![A-Za-z0-9_])', whole, text.strip())}`"
 
 
+def at_rate(help: str | None, script: str) -> str | None:
+    """A help that tells frames by the usual rate, with the rate of the script's clock."""
+    rate = _RATE.search(script)
+    if help is None or rate is None or float(rate[1]) <= 0:
+        return help
+    fps = rate[1]
+    help = help.replace(f"`{USUAL} Hz*time`, where {USUAL} is the `fps` of the clock", f"`{fps} Hz*time`")
+    help = help.replace(
+        f"12 of {USUAL} a second is at `0.4 s`", f"12 of {fps} a second is at `{12 / float(fps):.4g} s`"
+    )
+    return help.replace(f"{USUAL} Hz*time", f"{fps} Hz*time").replace(f"fps: {USUAL}}}", f"fps: {fps}}}")
+
+
 def less(text: str, other: str) -> str:
     """The difference of two formulas as a text: ``x^2 - 1``, ``x^2 - (y + 1)``."""
     text, other = text.strip(), other.strip()
@@ -277,6 +292,8 @@ def indexed(expr: Expr, before: str, text: str, at: int) -> str | None:
         return None
     if (index := _INDEX.match(text, at)) is not None:
         whole = f"item({before}, {index[1]})"
+        if before.rpartition(".")[2] in VECTORS and int(index[1]) < len(AXES):
+            return f"write `{before}.{AXES[int(index[1])]}`"
         if int(index[1]) >= len(AXES) or before.endswith("s"):  # positions, radii of a list
             return f"write `{whole}`"
         return f"write `{before}.{AXES[int(index[1])]}`, or of a list `{whole}`"

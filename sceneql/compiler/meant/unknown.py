@@ -12,6 +12,7 @@ from pydantic import BaseModel
 
 from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.meant.capsule import capsule
 from sceneql.compiler.meant.grouped import Renamed, ends, flat, numbered_alike, of_inner
 from sceneql.compiler.meant.own_values import with_own
 from sceneql.compiler.meant.together import filled, together
@@ -71,6 +72,7 @@ def report_unknown(
     told: dict[str, list[str]] = {}
     for name in unknown:
         help = together(name, unknown, node, known)
+        final = help is not None  # what it says is of these values already
         help = (
             help or (said_by or {}).get(name) or whole(name, node) or instead(f"field.{title.partition('.')[0]}", name)
         )
@@ -105,7 +107,7 @@ def report_unknown(
         if help is None and table and table not in node.entries:
             inner = ", ".join(f"{one}: {node.entries[one].span.text}" for one in unknown)
             help = f"names of your own stand in `{table}`: write `{table}: {{{inner}}}`"
-        for one in (name, *unknown) if help else ():
+        for one in (name, *unknown) if help and not final else ():
             help = with_own(help or "", one, node.entries[one].span.text, beside=one != name)
         told.setdefault(help or f"it has {', '.join(known)}{len(told) * WITHOUT}", []).append(name)
     for help, names in told.items():
@@ -174,6 +176,8 @@ def word_meant(
         return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.span.text}}}`"
     if isinstance(fields, Scalar) and entry.name == entry.word and catalogue.load(family, fields.text) is not None:
         return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.text}}}`"
+    if family == "objects" and (tube := capsule(entry.word, fields)) is not None:
+        return tube
     if fields is None and family_of.get(entry.word, family) != family:
         pairs = having_fields(["between"], family, catalogue)
         word = DEFAULT.get(family) if DEFAULT.get(family) in pairs else next(iter(pairs), None)
@@ -258,8 +262,10 @@ def _fields_of(entry: Entry, cls: type[BaseModel]) -> str:
         value = None
     if not isinstance(value, Number | Vector) or value.type.dimension is None:
         return "..."
+    first = value.items[0] if isinstance(value, Vector) else value
+    shape = (len(value.items),) if isinstance(value, Vector) else ()
     for name, info in cls.model_fields.items():
-        if any((one.dimension, one.shape) == (value.type.dimension, value.type.shape) for one in quantities(info)):
+        if any((one.dimension, one.shape) == (first.type.dimension, shape) for one in quantities(info)):
             extra: Any = info.json_schema_extra or {}
             above = isinstance(value, Number) and {"above", "at_least"} & extra.get("limits", {}).keys()
             return f"{{{written_name(name)}: {entry.word.lstrip('-+ ') if above else entry.word}}}"

@@ -32,6 +32,15 @@ WAYS, SIZES = ("direction", "dir", "axis"), ("length", "magnitude", "size", "len
 """Fields of other programs for an arrow's direction and length."""
 WHIRLS = ("speed", "velocity", "rate", "strength", "angular_velocity", "omega")
 """Fields of other programs for how fast a vortex turns."""
+MODULI = {
+    "mu": ("mu", "g", "shear", "shear_modulus", "shearmodulus"),
+    "lambda": ("lambda", "lam", "lame", "first_lame", "lambda_"),
+    "bulk": ("k", "bulk", "bulk_modulus", "bulkmodulus", "kappa"),
+    "nu": ("nu", "poisson", "poisson_ratio", "v"),
+}
+"""Fields of other programs for elastic constants."""
+HALF = 0.5
+PRESSURES = ((1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"))
 LASTING = ("duration", "time", "seconds", "period")
 """Fields of other programs for how long a motion takes."""
 GRAVITATION = 6.6743e-11
@@ -44,6 +53,7 @@ def worked_out(name: str, unknown: Sequenced[str], node: Mapping, known: Collect
     """The help for an unknown field whose value here follows from what is written."""
     told = _lens(name, node, known) or _cone(name, unknown, node, known) or _arrow(name, unknown, node, known)
     told = told or _balls(name, node, known) or _pointing(name, unknown, node, known) or _colors(name, node, known)
+    told = told or _moduli(name, unknown, node, known)
     told = told or _whirling(name, node, known) or _beside(name, node, known)
     return told or _progress(name, node, known) or _followed(name, node, known) or _pulling(name, node, known)
 
@@ -162,6 +172,30 @@ def _whirling(name: str, node: Mapping, known: Collection[str]) -> str | None:
         return None
     told = f"`circulation: {tau * speed[0]:.3g} m^2/s`"
     return f"it falls off from the axis: {speed[0]:g} m/s at a distance of 1 m is {told}: write that"
+
+
+def _moduli(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for other pairs of elastic constants: of Lame, or the moduli of shear and of volume."""
+    if not {"modulus", "poisson"} <= {*known} or name not in unknown:
+        return None
+    given = {
+        ours: (in_si(node.entries[one].span.text) or [0.0])[0]
+        for ours, names in MODULI.items()
+        for one in node.entries
+        if one in names or one.lower() in names
+    }
+    mu, first, bulk, nu = (given.get(one, 0.0) for one in ("mu", "lambda", "bulk", "nu"))
+    if mu > 0 and (first > 0 or bulk > 0):
+        first = first or bulk - 2.0 * mu / 3.0
+        modulus, nu = mu * (3.0 * first + 2.0 * mu) / (first + mu), first / (2.0 * (first + mu))
+    elif mu > 0 and 0 < nu < HALF:
+        modulus = 2.0 * mu * (1.0 + nu)
+    elif bulk > 0 and 0 < nu < HALF:
+        modulus = 3.0 * bulk * (1.0 - 2.0 * nu)
+    else:
+        return None
+    scale, unit = next((one for one in PRESSURES if modulus >= one[0]), (1.0, "Pa"))
+    return f"write `modulus: {modulus / scale:.4g} {unit}, poisson: {nu:.4g}`"
 
 
 def _progress(name: str, node: Mapping, known: Collection[str]) -> str | None:
