@@ -226,8 +226,8 @@ class _Parser:
             low, high = operation.least, operation.most
             wanted = f"{low}" if low == high else f"{low} or more" if high == MANY else f"{low} to {high}"
             message = f"{name} takes {wanted} argument{'' if wanted == '1' else 's'}, not {len(args)}"
-            help = self._rewritten(name, args, opening) or instead("function", name)
-            raise self._fail("wrong-arity", message, start, self.previous, help=help)
+            better = self._rewritten(name, args, opening) or instead("function", name)
+            raise self._fail("wrong-arity", message, start, self.previous, help=better)
         return Call(name, args, span=self._from(start))
 
     def _rewritten(self, name: str, args: tuple[Expr, ...], opening: int) -> str | None:

@@ -221,9 +221,7 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         return f"write {told}" if 1 <= len(found) <= 2 else None
     if issubclass(cls, kinds.Record) and (meant := cls.meant_by(node.text)) is not None:
         return meant
-    if (painted := colored(reader, node, cls)) is not None:
-        return painted
-    if (side := part_at_side(reader, node, cls)) is not None:
+    if (side := colored(reader, node, cls) or part_at_side(reader, node, cls)) is not None:
         return side
     if node.text.lower() in TRUE and not required:
         return "write `{}`: all of its fields have defaults"

@@ -43,7 +43,7 @@ def listed_states(reader: Any, written: Naming[str, Node], name: str) -> str | N
         return None
     orders = [order for order in permutations(sorted(free)) if not any(map(str.__eq__, order, formulas))]
     order = orders[0] if orders else tuple(free)
-    for one in order:
-        reader.names.broken.add(one)
+    for key in order:
+        reader.names.broken.add(key)
     value = dict(zip(order, start if name == "start" else rates, strict=True))
     return f"each has its name: write `{name}: {{{', '.join(f'{key}: {text}' for key, text in value.items())}}}`"

@@ -44,7 +44,7 @@ def report_carried(
         skin = isinstance(task.kind, Model) and task.kind.carried
         if skin and not by and not found.errors:  # refused forces are missing in `by`
             text = f"no flow carries '{task.name}', and by itself it does not move"
-            flows = [name for name, one in tasks.items() if getattr(one.kind, "flows", False)]
+            flows = [one.name for one in tasks.values() if getattr(one.kind, "flows", False)]
             other = "" if len(flows) == 1 else " with the name of a flow"
             force = f"immersion: {{on: [{task.name}], in: {flows[0] if flows else '...'}}}"
             help = f"write `forces: [{{{force}}}]`{other}"
