@@ -13,9 +13,8 @@ from sceneql.language.tree import Scalar
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 from sceneql.quantities.instead import instead
 from sceneql.quantities.latex import from_latex
-from sceneql.quantities.loops import written_out
 from sceneql.quantities.operations import FUNCTIONS
-from sceneql.quantities.spaced import VECTORS
+from sceneql.quantities.spaced import VECTORS, written_out
 from sceneql.quantities.span import Source, Span
 
 _MOST_SCANNED: Final = 20_000

@@ -5,10 +5,9 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from sceneql.quantities.called import rewritten
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, of_library, suggestion
 from sceneql.quantities.expression import Call, Expr, Name, Number, Vector, children, each_once
-from sceneql.quantities.instead import instead
+from sceneql.quantities.instead import instead, rewritten
 from sceneql.quantities.latex import from_latex
 from sceneql.quantities.literal import (
     NUMBER,
@@ -21,7 +20,6 @@ from sceneql.quantities.literal import (
     whole_value,
     with_points,
 )
-from sceneql.quantities.loops import written_out
 from sceneql.quantities.operations import FUNCTIONS, MANY, OPERATIONS
 from sceneql.quantities.spaced import (
     bracketed,
@@ -37,6 +35,7 @@ from sceneql.quantities.spaced import (
     typed_plainly,
     vector_called,
     without_dots,
+    written_out,
 )
 from sceneql.quantities.span import Span
 from sceneql.quantities.temperatures import Temperatures

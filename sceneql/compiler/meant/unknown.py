@@ -12,8 +12,8 @@ from pydantic import BaseModel
 
 from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.compiler.meant.capsule import capsule
 from sceneql.compiler.meant.grouped import Renamed, ends, flat, numbered_alike, of_inner
+from sceneql.compiler.meant.other_words import other_word
 from sceneql.compiler.meant.own_values import with_own
 from sceneql.compiler.meant.together import filled, together
 from sceneql.compiler.meant.unwrapped import unwrapped
@@ -183,8 +183,8 @@ def word_meant(
         return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.span.text}}}`"
     if isinstance(fields, Scalar) and entry.name == entry.word and catalogue.load(family, fields.text) is not None:
         return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.text}}}`"
-    if family == "objects" and (tube := capsule(entry.word, fields)) is not None:
-        return tube
+    if (other := other_word(entry.word, family, fields)) is not None:
+        return other
     if fields is None and family_of.get(entry.word, family) != family:
         pairs = having_fields(["between"], family, catalogue)
         word = DEFAULT.get(family) if DEFAULT.get(family) in pairs else next(iter(pairs), None)
