@@ -19,7 +19,7 @@ from sceneql import kinds
 from sceneql.compiler import limits, paint, values
 from sceneql.compiler.annotations import could_be, is_fixed, unwrap
 from sceneql.compiler.formulas import Wanted, read_formula
-from sceneql.compiler.meant import by_side, likely, sizes, under_names
+from sceneql.compiler.meant import by_side, likely, picture_sizes, under_names
 from sceneql.compiler.meant import quantity_help as helped
 from sceneql.compiler.meant.chained import improve
 from sceneql.compiler.meant.quantity_help import TRUE
@@ -270,7 +270,7 @@ class Reader:
                 return choice
         every = ", ".join(str(c) for c in choices)
         if other:
-            hint = sizes.size_meant(text, choices) or likely.choice_meant(text, list(map(str, choices)))
+            hint = picture_sizes.size_meant(text, choices) or likely.choice_meant(text, list(map(str, choices)))
             raise self._fail("unknown-choice", f"{what} is {other} or one of {every}, not '{text}'", node.span, hint)
         hint = likely.choice_meant(text, [str(c) for c in choices]) or f"one of {every}"
         hint = f"it is always `{what}: {every}`" if len(choices) == 1 else hint

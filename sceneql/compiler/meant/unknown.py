@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.meant.grouped import Renamed, ends, flat, numbered_alike, of_inner
-from sceneql.compiler.meant.other_words import other_word
+from sceneql.compiler.meant.other_shapes import other_word
 from sceneql.compiler.meant.own_values import with_own
 from sceneql.compiler.meant.together import filled, together
 from sceneql.compiler.meant.unwrapped import unwrapped

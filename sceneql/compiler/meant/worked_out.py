@@ -6,7 +6,7 @@ from collections.abc import Collection
 from collections.abc import Sequence as Sequenced
 from math import atan, degrees, tau
 
-from sceneql.compiler.meant.other_words import prism
+from sceneql.compiler.meant.other_shapes import prism
 from sceneql.compiler.meant.own_values import in_si, numbers_with_unit
 from sceneql.language.tree import Mapping, Sequence
 
