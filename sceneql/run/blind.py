@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +14,7 @@ from sceneql.shapes.world_boxes import box_of
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, SeenFrame, Shape
-    from sceneql.graph import Task
+    from sceneql.graph import SimulationGraph
 
 WOUND = 0.99
 """Fraction of the full solid angle from which on a mesh encloses a point: open sheets enclose none."""
@@ -73,9 +73,13 @@ def _turns(corners: Floats) -> float:
     return abs(float(np.arctan2(up, down).sum())) / (2.0 * np.pi)
 
 
-def warnings(within: Within, tasks: Mapping[str, Task]) -> Iterator[Diagnostic]:
-    """A warning for each camera and each part that it stood in."""
+def warnings(within: Within, graph: SimulationGraph) -> Iterator[Diagnostic]:
+    """A warning for each camera and each part that it stood in, unless the check told of the camera."""
+    tasks = graph.tasks
+    known = [one.span for one in graph.warnings if one.code == "camera-inside"]
     for (camera, part), (first, last) in within.items():
+        if tasks[camera].span in known:
+            continue
         when = f"at {first:.3g} s" if first == last else f"from {first:.3g} s to {last:.3g} s"
         text = f"the camera '{camera}' stands inside '{part}' {when}: it sees nothing else"
         help = f"lead it around '{part}', or move the part out of its way"

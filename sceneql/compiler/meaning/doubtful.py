@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sceneql.compiler.meaning import after_end, still_keys, strobing, unread_text, unused_parts
+from sceneql.compiler.meaning import (
+    after_end,
+    enclosed,
+    lighting,
+    still_keys,
+    strobing,
+    unread_text,
+    unused_parts,
+    views,
+)
 from sceneql.compiler.meaning.facts import Facts
 from sceneql.graph import Task
 from sceneql.quantities.diagnostic import Diagnostics
@@ -16,6 +25,9 @@ def warn_of_meaning(facts: Facts, found: Diagnostics) -> None:
     strobing.warn(facts, found)
     after_end.warn(facts, found)
     unread_text.warn(facts, found)
+    enclosed.warn(facts, found)
+    views.warn(facts, found)
+    lighting.warn(facts, found)
 
 
 def warn_of_unused_parts(facts: Facts, order: Mapping[str, Task], found: Diagnostics) -> None:
