@@ -6,10 +6,12 @@ from collections.abc import Mapping
 
 from sceneql.compiler.meaning import (
     after_end,
+    at_rest,
     enclosed,
     lighting,
     still_keys,
     strobing,
+    tied,
     unread_text,
     unused_parts,
     views,
@@ -18,16 +20,23 @@ from sceneql.compiler.meaning.facts import Facts
 from sceneql.graph import Task
 from sceneql.quantities.diagnostic import Diagnostics
 
+ALL = (
+    still_keys,
+    strobing,
+    tied,
+    at_rest,
+    after_end,
+    unread_text,
+    enclosed,
+    views,
+    lighting,
+)
+
 
 def warn_of_meaning(facts: Facts, found: Diagnostics) -> None:
     """Warn of all that is valid and most likely not meant."""
-    still_keys.warn(facts, found)
-    strobing.warn(facts, found)
-    after_end.warn(facts, found)
-    unread_text.warn(facts, found)
-    enclosed.warn(facts, found)
-    views.warn(facts, found)
-    lighting.warn(facts, found)
+    for one in ALL:
+        one.warn(facts, found)
 
 
 def warn_of_unused_parts(facts: Facts, order: Mapping[str, Task], found: Diagnostics) -> None:

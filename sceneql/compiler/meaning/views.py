@@ -126,12 +126,11 @@ def _turning(facts: Facts, camera: Task, found: Diagnostics) -> None:
     if isinstance(lag, float) and lag > end and getattr(kind, "follow", None) is not None:
         told = f"'{camera.name}' stays behind by {lag:g} s, longer than the clock, {end:g} s: it hardly follows"
         found.warning("nothing-moves", told, camera.span, help="write a shorter time, as `lag: 0.3 s`")
-    away, around = constant(getattr(kind, "distance", None)), getattr(kind, "around", None)
-    held = (
-        ball(facts, around.name) if away is not None and around is not None and around.name in facts.objects else None
-    )
+    away = constant(getattr(kind, "distance", None))
+    around = getattr(getattr(kind, "around", None), "name", "")
+    held = ball(facts, around) if away is not None and around in facts.objects else None
     if held is not None and away < held.inner:
-        told = f"'{camera.name}' goes round inside of '{around.name}', {away:g} m from its middle"
+        told = f"'{camera.name}' goes round inside of '{around}', {away:g} m from its middle"
         found.warning("camera-inside", told, camera.span, help=f"write `distance: {6.0 * held.reach:.3g} m`")
 
 
