@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +14,7 @@ from sceneql.shapes.world_boxes import box_of
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, SeenFrame, Shape
-    from sceneql.graph import SimulationGraph
+    from sceneql.graph import Task
 
 WOUND = 0.99
 """Fraction of the full solid angle from which on a mesh encloses a point: open sheets enclose none."""
@@ -73,10 +73,9 @@ def _turns(corners: Floats) -> float:
     return abs(float(np.arctan2(up, down).sum())) / (2.0 * np.pi)
 
 
-def warnings(within: Within, graph: SimulationGraph) -> Iterator[Diagnostic]:
-    """A warning for each camera and each part that it stood in, unless the check told of the camera."""
-    tasks = graph.tasks
-    known = [one.span for one in graph.warnings if one.code == "camera-inside"]
+def warnings(within: Within, tasks: Mapping[str, Task], told: Collection[Diagnostic] = ()) -> Iterator[Diagnostic]:
+    """A warning for each camera and each part that it stood in, unless it is ``told`` of already."""
+    known = [one.span for one in told if one.code == "camera-inside"]
     for (camera, part), (first, last) in within.items():
         if tasks[camera].span in known:
             continue

@@ -7,8 +7,11 @@ from collections.abc import Mapping
 from sceneql.compiler.meaning import (
     after_end,
     at_rest,
+    elementary,
     enclosed,
     lighting,
+    missed,
+    slack,
     still_keys,
     strobing,
     tied,
@@ -26,10 +29,13 @@ ALL = (
     tied,
     at_rest,
     after_end,
+    elementary,
     unread_text,
     enclosed,
     views,
     lighting,
+    missed,
+    slack,
 )
 
 

@@ -44,7 +44,10 @@ def report_carried(
         skin = isinstance(task.kind, Model) and task.kind.carried
         if skin and not by and not found.errors:  # refused forces are missing in `by`
             text = f"no flow carries '{task.name}', and by itself it does not move"
-            help = f"write `forces: [{{immersion: {{on: [{task.name}], in: ...}}}}]` with the name of a flow"
+            flows = [t.name for t in models if isinstance(t.kind, Model) and t.kind.flows]
+            one = flows[0] if len(flows) == 1 else "..."
+            help = f"write `forces: [{{immersion: {{on: [{task.name}], in: {one}}}}}]`"
+            help += " with the name of a flow" if one == "..." else ""
             found.error("not-carried", text, task.span, help=help)
         if len(by) > 1:
             notes = [Note("the other is here", by[0].span)] if by[0].span else []
