@@ -37,10 +37,10 @@ def warn(facts: Facts, found: Diagnostics) -> None:
             continue
         forces = [cast(Interaction, one.kind) for one in facts.forces(island)]
         pull = pull_of(forces) if forces else (0.0, 0.0, 0.0)
-        starts = (
-            {} if pull is None else {name: starts_of(facts.models[name], facts.tasks, start) for name in island.models}
-        )
-        if pull is None or not all(starts.values()) or sum(map(len, starts.values())) > MOST:
+        if pull is None:
+            continue
+        starts = {name: starts_of(facts.models[name], facts.tasks, start) for name in island.models}
+        if not all(starts.values()) or sum(map(len, starts.values())) > MOST:
             continue
         _missed(facts, island, starts, pull, start, found)
     _through(facts, start, found)
@@ -63,7 +63,10 @@ def _missed(
         return
     if not all(value.constant for task in kinds.values() for value in values_of(task.kind)):
         return
+    told = [one.span for one in found.found if one.code == "nothing-falls"]
     if any(facts.tasks[name].span is None for name, _, _ in island.contacts):
+        return
+    if any(facts.tasks[name].span in told for name in island.models):
         return
     together = [_nearest(a, b, end) < 1.5 * (a[2] + b[2]) for a, b in combinations(every, 2)]
     if any(together) or any(_comes(facts.tasks[other], one, pull, end, start) for other in others for one in every):
@@ -128,7 +131,7 @@ def _nearest(one: Start, other: Start, end: float) -> float:
 
 def _through(facts: Facts, start: Any, found: Diagnostics) -> None:
     """Masses of contacts with objects that meet one another, where no contact is of masses."""
-    contacts = [task for task in facts.of(Contact)]
+    contacts = list(facts.of(Contact))
     if not contacts or any(task.kind.mutual for task in contacts):  # type: ignore[attr-defined]
         return
     if any(constant(getattr(task.kind, "friction", None)) != 0.0 for task in contacts):
