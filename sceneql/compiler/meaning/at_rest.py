@@ -18,7 +18,7 @@ def warn(facts: Facts, found: Diagnostics) -> None:
     """Warn of each such island that has not been told of."""
     led = any(not value.constant for task in facts.tasks.values() if leads(task) for value in _values(task))
     told = [one.span for one in found.found if one.code == "nothing-moves"]
-    for island in facts.groups:
+    for island in facts.groups if facts.whole else ():
         models = [facts.tasks[name] for name in island.models]
         if any(task.span in told for task in models) or (led and island.contacts) or facts.ties(island):
             continue

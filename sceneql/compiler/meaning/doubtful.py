@@ -12,6 +12,8 @@ from sceneql.compiler.meaning import (
     lighting,
     missed,
     slack,
+    still_fields,
+    still_flows,
     still_keys,
     strobing,
     tied,
@@ -36,6 +38,8 @@ ALL = (
     lighting,
     missed,
     slack,
+    still_fields,
+    still_flows,
 )
 
 

@@ -64,7 +64,7 @@ class Held:
 def warn(facts: Facts, found: Diagnostics) -> None:
     """Warn of each such body, where nothing but its weight acts on it."""
     start: Any = Beginning(facts.tasks)
-    for island in facts.groups:
+    for island in facts.groups if facts.whole else ():
         held = _held(facts, island, start)
         if held is None:
             continue
