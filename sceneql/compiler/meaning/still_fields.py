@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from sceneql.compiler.meaning.box_values import box, flat, nothing, over, value
 from sceneql.compiler.meaning.facts import Facts
-from sceneql.compiler.meaning.formulas import box, flat, nothing, over, value
 from sceneql.graph import Task
 from sceneql.kinds import Formula, Interaction, Model
 from sceneql.quantities.diagnostic import Diagnostics

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from sceneql.compiler.meaning.box_values import box, flat, nothing, over
 from sceneql.compiler.meaning.facts import Facts
-from sceneql.compiler.meaning.formulas import box, flat, nothing, over
 from sceneql.compiler.meaning.places import ball, opaque
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Task
