@@ -9,8 +9,10 @@ from typing import Any
 from sceneql.kinds import Formula
 from sceneql.quantities.evaluate import evaluate
 
-FINE = 12
-"""Number of places along each side of a box at which a formula is looked at."""
+FLAT, FINE, COARSE = 2, 12, 4
+"""Number of sides of a flat box, and of steps along each side of it, and of a deep one, at which formulas are taken."""
+PLACES = ((0.31, 0.17, 0.59), (0.0, 0.0, 0.0), (17.3, 5.9, 3.1))
+"""Places at which a formula that does not depend on the place is the same."""
 
 
 def value(formula: Formula, place: Sequence[float], time: float) -> Any:
@@ -41,24 +43,21 @@ def box(kind: Any) -> list[tuple[float, float]] | None:
 
 
 def over(formula: Formula, ends: Sequence[tuple[float, float]], times: Sequence[float]) -> Iterator[Any]:
-    """Values at places of a box and at times."""
-    steps = [[low + (high - low) * k / FINE for k in range(FINE + 1)] for low, high in ends]
+    """Values at places of a box and at times; the first in its middle."""
+    fine = FINE if len(ends) <= FLAT else COARSE
+    steps = [[low + (high - low) * k / fine for k in range(fine + 1)] for low, high in ends]
     for time in times:
+        yield value(formula, [0.5 * (low + high) for low, high in ends], time)
         for place in product(*steps):
             yield value(formula, place, time)
 
 
-def nothing(formula: Formula | None, ends: Sequence[tuple[float, float]], end: float) -> bool:
-    """Whether a formula is certainly 0: the number 0, or none."""
+def nothing(formula: Formula | None, end: float) -> bool:
+    """Whether a formula is certainly 0 up to a time: there is none, or one that is 0 whatever the place."""
     if formula is None:
         return True
-    values = list(over(formula, ends, (0.0, 0.37 * end, end)))
-    return not _varies(formula) and None not in values and not any(any(flat(one)) for one in values)
-
-
-def _varies(formula: Formula) -> bool:
-    """Whether a formula depends on the place, so that what lies between looked-at places is not known."""
-    return value(formula, (), 0.0) is None or any(
-        value(formula, place, 0.0) != value(formula, (0.0, 0.0, 0.0), 0.0)
-        for place in ((0.31, 0.17, 0.59), (17.3, 5.9, 3.1))
-    )
+    for time in (0.0, 0.37 * end, end):
+        values = [value(formula, place, time) for place in PLACES]
+        if values[0] is None or any(flat(values[0])) or any(other != values[0] for other in values):
+            return False
+    return True

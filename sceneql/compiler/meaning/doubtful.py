@@ -9,6 +9,7 @@ from sceneql.compiler.meaning import (
     at_rest,
     elementary,
     enclosed,
+    hardly_moves,
     joined,
     lighting,
     maps,
@@ -22,6 +23,7 @@ from sceneql.compiler.meaning import (
     unread_text,
     unused_parts,
     views,
+    whole_degrees,
 )
 from sceneql.compiler.meaning.facts import Facts
 from sceneql.graph import Task
@@ -34,9 +36,11 @@ ALL = (
     at_rest,
     after_end,
     elementary,
+    hardly_moves,
     unread_text,
     enclosed,
     views,
+    whole_degrees,
     joined,
     lighting,
     maps,

@@ -33,7 +33,7 @@ def warn(facts: Facts, found: Diagnostics) -> None:
     """Warn of each contact of masses whose ways are known."""
     start: Any = Beginning(facts.tasks)
     for island in facts.groups:
-        if not island.contacts or facts.ties(island):
+        if not island.contacts or facts.ties(island) or _many(facts, island):
             continue
         forces = [cast(Interaction, one.kind) for one in facts.forces(island)]
         pull = pull_of(forces) if forces else (0.0, 0.0, 0.0)
@@ -44,6 +44,11 @@ def warn(facts: Facts, found: Diagnostics) -> None:
             continue
         _missed(facts, island, starts, pull, start, found)
     _through(facts, start, found)
+
+
+def _many(facts: Facts, island: Island) -> bool:
+    """Whether an island has more masses than are looked at."""
+    return sum(max(len(facts.models[m].drives()), len(facts.models[m].static_masses())) for m in island.models) > MOST
 
 
 def _missed(
@@ -143,7 +148,7 @@ def _through(facts: Facts, start: Any, found: Diagnostics) -> None:
         pull = pull_of(forces) if forces else (0.0, 0.0, 0.0)
         models = [facts.tasks[name] for name in island.models]
         plain = all(isinstance(t.kind, Model) and t.kind.inert and not t.kind.turns for t in models)
-        if not island.contacts or pull is None or not plain or facts.ties(island):
+        if not island.contacts or pull is None or not plain or facts.ties(island) or _many(facts, island):
             continue
         pulls.append(pull)
         for task in models:

@@ -7,6 +7,7 @@ from typing import Any, cast
 
 from sceneql.compiler.meaning.facts import Facts
 from sceneql.compiler.passes.fall_through import pull_of
+from sceneql.compiler.passes.unforced import starts_moving
 from sceneql.graph import Island, Task
 from sceneql.kinds import Interaction, Model
 from sceneql.quantities.diagnostic import Diagnostics
@@ -25,6 +26,7 @@ def warn(facts: Facts, found: Diagnostics) -> None:
     for island in facts.groups:
         forces = [cast(Interaction, one.kind) for one in facts.forces(island)]
         pull = pull_of(forces) if forces else None
+        _unheld(facts, island, pull, found)
         for name in island.models:
             task = facts.tasks[name]
             kind: Any = task.kind
@@ -40,6 +42,27 @@ def warn(facts: Facts, found: Diagnostics) -> None:
                     found.warning("too-soft", text, task.span, help=help)
 
 
+def _unheld(facts: Facts, island: Island, pull: tuple[float, ...] | None, found: Diagnostics) -> None:
+    """A net or a solid of elements with weight, alone in its island, that is held nowhere and touches nothing."""
+    if pull is None or island.contacts or facts.ties(island) or len(island.models) > 1 or not facts.whole:
+        return
+    task = facts.tasks[island.models[0]]
+    kind: Any = task.kind
+    told = any(one.span == task.span and one.code in ("falls-through", "nothing-holds") for one in found.found)
+    if told or starts_moving(kind) or not {"pins", "hold"} & type(kind).model_fields.keys():
+        return
+    if (
+        getattr(kind, "pins", None)
+        or getattr(kind, "hold", None)
+        or any(m.fixed for m in kind.static_masses().values())
+    ):
+        return
+    text = f"nothing holds '{task.name}': it falls all the time"
+    hold = "`hold: {wall: {where: x < 0.1}}`" if hasattr(kind, "hold") else "`fixed: yes` in a mass, or `pins`"
+    help = f"write {hold}, or let it fall onto what is there: `contacts: {{touch: collision}}`"
+    found.warning("nothing-holds", text, task.span, help=help)
+
+
 def _net(facts: Facts, task: Task, island: Island, pull: tuple[float, ...] | None, found: Diagnostics) -> None:
     kind: Any = task.kind
     places = {name: mass.position for name, mass in kind.masses.items()}
@@ -49,7 +72,7 @@ def _net(facts: Facts, task: Task, island: Island, pull: tuple[float, ...] | Non
     )
     stiffness = kind.stiffness.number() if kind.stiffness.constant else None
     soft: dict[str, float] = {}
-    for number, spring in enumerate(kind.springs):
+    for spring in kind.springs:
         a, b = spring.between
         if a not in places or b not in places:
             return
@@ -59,13 +82,16 @@ def _net(facts: Facts, task: Task, island: Island, pull: tuple[float, ...] | Non
             soft[end] = soft.get(end, 0.0) + (float("inf") if own is None else float(own))
         which = f"the spring of '{a}' and '{b}'"
         rest = spring.rest
+        if length == 0.0 and rest:
+            text = f"'{a}' and '{b}' start at one place: their spring has no direction"
+            found.warning("far-from-rest", text, task.span, help=f"write another `position` of '{b}'")
         if rest is None or rest == 0.0 or length == 0.0:
             continue
         if rest > SHORT * length or length > LONG * rest:
             text = f"{which} is {length:.3g} m long at the start, and {rest:.3g} m without force: it "
             text += f"{'throws them apart' if rest > length else 'pulls them together'}"
             help = f"write `rest: {length:.3g} m`, or leave it out: by default it is the length at the start"
-            found.warning("far-from-rest", text, _place(task, number), help=help)
+            found.warning("far-from-rest", text, task.span, help=help)
     if pull is None or island.contacts or facts.ties(island) or len(island.models) > 1:
         return
     held = [name for name, mass in static.items() if mass.fixed]
@@ -84,10 +110,6 @@ def _net(facts: Facts, task: Task, island: Island, pull: tuple[float, ...] | Non
             help = f"write `stiffness: {_two(10.0 * mass.mass * hypot(*pull) / whole)} N/m`, or a smaller mass"
             found.warning("too-soft", text, task.span, help=help)
             break
-
-
-def _place(task: Task, number: int) -> Any:
-    return task.span
 
 
 def _two(number: float) -> str:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
-from sceneql.compiler.meaning.box_values import box, flat, nothing, over, value
+from sceneql.compiler.meaning.box_values import box, flat, nothing, over
 from sceneql.compiler.meaning.facts import Facts
 from sceneql.graph import Task
 from sceneql.kinds import Formula, Interaction, Model
@@ -57,13 +58,13 @@ def _even(task: Task, ends: Any, end: float) -> bool:
     """Whether a field is one number at the start, as on its boundary, and nothing changes it."""
     kind: Any = task.kind
     level = _number(kind.initial)
-    if level is None or not nothing(getattr(kind, "source", None), ends, end):
+    if level is None or not nothing(getattr(kind, "source", None), end):
         return False
-    if not nothing(getattr(kind, "velocity", None), ends, end):
+    if not nothing(getattr(kind, "velocity", None), end):
         return False
     for side in kind.boundary.values():
         given = [getattr(side, name, None) for name in ("value", "flux", "robin")]
-        if given[1] is not None and not nothing(given[1], ends, end):
+        if given[1] is not None and not nothing(given[1], end):
             return False
         if given[2] is not None and _number(given[2].outside) != level:
             return False
@@ -106,13 +107,21 @@ def _rates(facts: Facts, task: Task, sides: list[float], found: Diagnostics) -> 
         found.warning("too-fast", text, kind.coefficient.span or task.span, help=help + slower.format(few, few / 10.0))
     carried = getattr(drift, "velocity", None)
     if drift is not None and isinstance(carried, Formula) and source is None:
-        numbers = [value(carried, (0.0,) * len(sides), 0.0)]
-        numbers += list(over(carried, [(0.0, side) for side in sides], (0.0,)))
-        least = min((sum(c * c for c in flat(one)) ** 0.5 for one in numbers if one is not None), default=0.0)
-        if None not in numbers and least * frame > longest and _number(drift.strength) is None:
+        least = _least(carried, sides, longest / frame)
+        if least > longest / frame and _number(drift.strength) is None:
             text = f"the drift of '{task.name}' crosses its box {least * frame / longest:.2g} times from frame to frame"
             help = f"write a smaller `velocity`, of {longest / end:.2g} m/s or so"
             found.warning("too-fast", text, carried.span or task.span, help=help)
+
+
+def _least(carried: Formula, sides: list[float], enough: float) -> float:
+    """The least speed [m/s] of a drift at the start; 0 where it is not known, or below what is ``enough`` anywhere."""
+    least = inf
+    for one in over(carried, [(0.0, side) for side in sides], (0.0,)):
+        least = 0.0 if one is None else min(least, sum(c * c for c in flat(one)) ** 0.5)
+        if least <= enough:
+            return 0.0
+    return least
 
 
 def _still(side: Any) -> bool:

@@ -46,11 +46,11 @@ def _driven(facts: Facts, task: Task, ends: Any) -> bool:
     others = [facts.tasks[name].kind for name in group.models if name != task.name] if group is not None else []
     if kind.initial is not None or kind.buoyancy is not None or any(getattr(one, "has_bodies", True) for one in others):
         return True
-    if any(getattr(one, "carried", False) for one in others) or not nothing(kind.force, ends, facts.clock.end):
+    if any(getattr(one, "carried", False) for one in others) or not nothing(kind.force, facts.clock.end):
         return True
     for side in kind.boundary.values():
         moving = side.inflow.velocity if side.inflow is not None else getattr(side.wall, "velocity", None)
-        if not nothing(moving, ends, facts.clock.end) or (side.outflow is not None and side.outflow.pressure):
+        if not nothing(moving, facts.clock.end) or (side.outflow is not None and side.outflow.pressure):
             return True
     solids = [facts.tasks[ref.name] for ref in kind.around]
     return any(one.original is not None or not all(v.constant for v in values_of(one.kind)) for one in solids)
@@ -65,10 +65,13 @@ def _inflows(task: Task, ends: Any, end: float, found: Diagnostics) -> None:
         if name not in INWARD or INWARD[name][0] >= len(ends):
             return
         axis, sign = INWARD[name]
-        values = [None if one is None else flat(one) for one in over(side.inflow.velocity, ends, (0.0, 0.41 * end))]
-        if any(one is None or len(one) != len(ends) for one in values):
-            return
-        along[name] = [sign * one[axis] for one in values if one is not None]
+        along[name] = []
+        for one in over(side.inflow.velocity, ends, (0.0, 0.41 * end)):
+            if one is None or len(flat(one)) != len(ends):
+                return
+            along[name].append(sign * flat(one)[axis])
+            if along[name][-1] > 0.0:
+                break  # something comes in
     for name, inward in along.items():
         if max(inward) <= 0.0 and (min(inward) < 0.0 or len(along) == 1):
             axis, sign = INWARD[name]
