@@ -9,7 +9,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import KEYS, check
 from sceneql.compiler.meaning.doubtful import warn_of_meaning, warn_of_unused_parts
 from sceneql.compiler.meaning.facts import Facts
-from sceneql.compiler.meaning.undriven import report_masses, report_undriven
+from sceneql.compiler.meaning.listed_masses import report_masses
 from sceneql.compiler.names import Parsed
 from sceneql.compiler.over_time import check_latest
 from sceneql.compiler.passes.as_balls import warn_of_balls, warn_of_two_models
@@ -30,6 +30,7 @@ from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.left_behind import warn_of_left_behind, warn_of_one_place
 from sceneql.compiler.passes.outside_flows import report_outside_flows, warn_of_sections
 from sceneql.compiler.passes.overlaps import report_overlaps
+from sceneql.compiler.passes.own_shapes import report_placeless
 from sceneql.compiler.passes.probes import report_probes
 from sceneql.compiler.passes.prune import prune
 from sceneql.compiler.passes.readable import report_unreadable
@@ -70,11 +71,11 @@ def compile_script(
     checked = check(script, catalogue, found, parsed)
     check_studies(checked.settings.studies, script.root, catalogue, KEYS, found)
     report_circles(checked.tasks, found)
+    report_placeless(checked.tasks, found)
     background = checked.settings.background is not None
     tasks = expand(checked.tasks, catalogue, without=checked.without, implied=checked.implied, background=background)
     report_hollow(tasks, found)
     report_moving(tasks, found)
-    report_undriven(tasks, found)
     check_sizes(tasks, found)
     groups = islands(tasks, found)
     report_unreadable(tasks, groups, found)

@@ -1,4 +1,4 @@
-"""Errors of bodies that are objects which no model can move, and of masses that collide and overlap at the start."""
+"""Errors of listed masses that collide with one another and overlap at the start."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from math import dist
 from typing import Any
 
 from sceneql.graph import Island, Task
-from sceneql.kinds import Contact, Model, Object
+from sceneql.kinds import Contact
 from sceneql.quantities.diagnostic import Diagnostics
 
 MOST = 400
@@ -17,22 +17,6 @@ DEFAULT = 0.05
 """Radius [m] of a mass that says none."""
 ROUNDING = 1e-6
 """Depth relative to the radii up to which masses only touch."""
-
-
-def report_undriven(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report each model that moves an object without a place of its own, as a tube or a skeleton."""
-    for task in tasks.values():
-        for name, fields in task.kind.drives().items() if isinstance(task.kind, Model) else ():
-            kind: Any = tasks[name].original or tasks[name].kind
-            lacking = [field for field in fields if field not in type(kind).model_fields]
-            if not lacking or not isinstance(kind, Object):
-                continue
-            what = "body" if len(fields) > 1 else "particle"
-            text = f"'{name}' is a {tasks[name].word}, which has no {' and '.join(lacking)} that a {what} could drive"
-            help = f"put it into a group, `{task.name}_shape: {{group: {{children: [{name}]}}}}`"
-            help += f", and name that, `of: {task.name}_shape`"
-            ref = getattr(task.kind, "of", None)
-            found.error("no-position", text, getattr(ref, "span", None) or task.span, help=help)
 
 
 def report_masses(tasks: Mapping[str, Task], groups: tuple[Island, ...], found: Diagnostics) -> None:
