@@ -6,15 +6,19 @@ from collections.abc import Mapping
 
 from sceneql.compiler.meaning import (
     after_end,
+    alike_variants,
     at_rest,
     elementary,
     enclosed,
+    few_frames,
+    fixed_points,
     hardly_moves,
     joined,
     lighting,
     maps,
     missed,
     slack,
+    solid_parts,
     still_fields,
     still_flows,
     still_keys,
@@ -30,6 +34,10 @@ from sceneql.graph import Task
 from sceneql.quantities.diagnostic import Diagnostics
 
 ALL = (
+    solid_parts,
+    fixed_points,
+    few_frames,
+    alike_variants,
     still_keys,
     strobing,
     tied,

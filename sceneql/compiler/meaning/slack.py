@@ -17,6 +17,8 @@ SHORT, LONG = 5.0, 20.0
 """
 SAG = 5.0
 """Extents of a net by which a spring is lengthened by its weight, from which on it is too soft."""
+SEEN = 0.02
+"""Strain of a curtain by its weight below which nothing is seen to move."""
 STRETCH = 2.0
 """The same of a cloth, as a strain."""
 
@@ -33,6 +35,7 @@ def warn(facts: Facts, found: Diagnostics) -> None:
             if getattr(kind, "masses", None) and hasattr(kind, "springs"):
                 _net(facts, task, island, pull, found)
             elif pull is not None and {"pins", "facing", "stretch"} <= type(kind).model_fields.keys() and kind.pins:
+                _hangs(facts, island, task, pull, found)
                 strain = kind.mass * hypot(*pull) * kind.size[1] / kind.stretch
                 if strain > STRETCH and not kind.tear:
                     text = (
@@ -40,6 +43,22 @@ def warn(facts: Facts, found: Diagnostics) -> None:
                     )
                     help = f"write `stretch: {_two(20.0 * kind.stretch * strain)} N/m`, or a smaller `mass`"
                     found.warning("too-soft", text, task.span, help=help)
+
+
+def _hangs(facts: Facts, island: Island, task: Task, pull: tuple[float, ...], found: Diagnostics) -> None:
+    """A curtain that hangs by its whole upper side already, at rest: it only stretches a little."""
+    kind: Any = task.kind
+    down = kind.facing[0] * pull[0] + kind.facing[1] * pull[1] + kind.facing[2] * pull[2]
+    strain = kind.mass * hypot(*pull) * kind.size[1] / kind.stretch
+    plain = kind.pins == ("top",) and kind.rotation is None and kind.tear is None and pull[0] == pull[2] == 0.0
+    if not plain or down or pull[1] >= 0.0 or strain > SEEN or island.contacts or starts_moving(kind):
+        return
+    if len(island.models) == 1 and facts.whole:
+        text = (
+            f"'{task.name}' hangs straight down at rest: it stretches by {100.0 * strain:.2g} %, and nothing else moves"
+        )
+        help = "write `pins: [top_left, top_right]`, a `wind`, or let it start level, `facing: 0 1 0`"
+        found.warning("nothing-moves", text, task.span, help=help)
 
 
 def _unheld(facts: Facts, island: Island, pull: tuple[float, ...] | None, found: Diagnostics) -> None:
