@@ -13,7 +13,7 @@ from sceneql.galerkin import plane_quality
 from sceneql.galerkin.field_mesh import sized
 from sceneql.galerkin.plane_mesh import TooCoarse, outlined
 from sceneql.galerkin.simplex import Simplex
-from sceneql.linear.newton_kernels import FACTORIZATIONS
+from sceneql.linear.newton_kernels import FACTORIZATIONS, ITERATIONS
 from sceneql.march.driver import jacobian
 from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
@@ -153,6 +153,7 @@ def test_p1_on_a_box_keeps_the_range_of_its_start(tmp_path):
                 initial='"where(x > 0.5, 1, 0)"')  # fmt: skip
     heat.at(0.01)
     assert heat.run.march._settings[FACTORIZATIONS] == 1, "lengths of steps differ by rounding alone"
+    assert heat.run.march._settings[ITERATIONS] == 10, "a linear stage is solved by one update"
     assert heat.read("min") > -1e-13
     assert heat.read("max") < 1.0 + 1e-13
 

@@ -1,5 +1,8 @@
 """`repeat` inside the fields of a part: masses, springs, joints of a skeleton, children, counted or over names."""
 
+import math
+
+import numpy as np
 import pytest
 
 from sceneql import pipeline
@@ -145,3 +148,43 @@ def test_a_condition_of_a_copys_number_answers_yes_or_no(tmp_path):
     assert {name: mass.fixed for name, mass in masses.items()} == {
         "hook": True, "bead.0": True, "bead.1": False, "bead.2": False,
     }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "through",
+    [
+        "bead.position",
+        "[bead.position]",
+        '[{repeat: {count: 5, as: k}, point: [0.1 m*k, "sin(0.5*k)*(1 m)", "time*(1 m/s)"]}]',
+        '[{repeat: {count: 5, as: k}, x: 0.1 m*k, y: "sin(0.5*k)*(1 m)", z: "time*(1 m/s)"}]',
+        '[{repeat: {count: 5, as: k}, point: "bead.{k}.position"}]',
+    ],
+)
+def test_a_line_runs_through_computed_places(tmp_path, through):
+    """Places of copies in a list, by their numbers or by one name for all: there was no way to write them."""
+    text = f"""
+objects:
+  bead: {{repeat: {{count: 5, as: i}}, sphere: {{position: [0.1 m*i, "sin(0.5*i)*(1 m)", "time*(1 m/s)"]}}}}
+  wire: {{tube: {{through: {through}}}}}
+clock: {{end: 1 s}}
+"""
+    (moment,) = pipeline.simulate(load(tmp_path, text), [0.5])
+    expected = [[0.1 * k, math.sin(0.5 * k), 0.5] for k in range(5)]
+    assert moment.read("wire", "through") == pytest.approx(np.array(expected), abs=1e-15)
+
+
+def test_a_name_for_all_copies_within_a_template_means_its_own(tmp_path):
+    text = """
+templates:
+  string:
+    fields: {high: 1 m}
+    gives: {last: bead.2.position}
+    objects:
+      bead: {repeat: {count: 3, as: i}, sphere: {position: [0.1 m*i, high, 0 m], radius: 1 cm}}
+      wire: {tube: {through: bead.position}}
+parts: {s: {repeat: {count: 2, as: k}, string: {high: 1 m + 1 m*k}}}
+objects: {rope: {tube: {through: s.last}}}
+"""
+    (moment,) = pipeline.simulate(load(tmp_path, text), [0.0])
+    wires = [moment.read(f"s.{k}.wire", "through")[2].tolist() for k in range(2)]
+    assert wires == moment.read("rope", "through").tolist() == [[0.2, 1, 0], [0.2, 2, 0]]

@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import count, takewhile
 from typing import Protocol
 
 from sceneql.compiler.css_colors import NAMED, css_color
 from sceneql.compiler.meant.output_help import output_alone, output_meant
 from sceneql.kinds import Gives
 from sceneql.language.scope import Broken, Entry, Given, Scope
+from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence
 from sceneql.quantities.bind import Lookup, bind, component
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, nearest, suggestion
@@ -194,6 +196,25 @@ class Names:
             part = part.rpartition(".")[0]
         return (part, name[len(part) + 1 :]) if part else (name, "")
 
+    def copies_of(self, name: str) -> list[str]:
+        """What is meant by an output of a part that `repeat` made many of, in the copies' order; [] where it is none.
+
+        ``bead.0.position``, ``bead.1.position``, ... for ``bead.position``.
+        """
+        part, _, output = name.rpartition(".")
+        if not part or part in self.parts:
+            return []
+        inside = part if self.scope is None else self.scope.resolve(f"{part}.0").removesuffix(".0")
+        every = (f"{inside}.{k}" for k in count())
+        copies = takewhile(lambda copy: copy in self.parts or f"{copy}.{output}" in self.given, every)
+        return [f"{copy}.{output}" for copy in copies]
+
+    def of_copy(self, node: Node) -> Names:
+        """These names with the number of a copy that `repeat` made inside of a list; the same for other nodes."""
+        if not isinstance(node, MappingNode) or node.index is None:
+            return self
+        return replace(self, scope=Scope({}, dict([node.index]), self.scope))
+
     def gives(self, name: str) -> bool:
         """Whether a dotted name is the output of a part, or a component of one."""
         part, output = self.part_of(name)
@@ -286,7 +307,7 @@ class Names:
                 some if self.outputs_of(wanted) != {} else instead("name", wanted) or "it has no values to read"
             )
         else:
-            hint = self._copy_number(wanted) or instead("name", wanted)
+            hint = self._copy_number(wanted) or self._of_copies(wanted) or instead("name", wanted)
             hint = hint or (output_alone(wanted, self._giving) if len(parts) == 1 < len(wanted) else None)
             hint = hint or suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time", *CONSTANTS])
             model = None if hint else self.model_of(parts[0])
@@ -329,6 +350,16 @@ class Names:
             names += [*scope.fields, *scope.names]
             scope = scope.outer
         return names
+
+    def _of_copies(self, wanted: str) -> str | None:
+        """The help for the name, or an output, of a part that `repeat` made many of, where one value is wanted."""
+        part, _, output = (wanted, "", "position") if f"{wanted}.0" in self.parts else wanted.rpartition(".")
+        if f"{part}.0" not in self.parts or (known := self.outputs_of(f"{part}.0")) is None or output not in known:
+            return None
+        help = f"its copies are {part}.0, {part}.1, ...: one is `{part}.0.{output}`"
+        return (
+            f"{help}, all of them in a list of places `{part}.{output}`" if known[output].type.shape == (3,) else help
+        )
 
     def _copy_number(self, wanted: str) -> str | None:
         """The help for the number of a copy by another program's name: the name that it has in the copies around."""

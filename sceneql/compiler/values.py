@@ -39,6 +39,8 @@ from sceneql.quantities.units import describe, in_words, unit_of
 
 PLAIN_NUMBER = Quantity(PLAIN)
 COMPONENTS = ("x", "y", "z")
+POINT = "point"
+"""The field of an item that `repeat` copies in a list of places."""
 _SIZES = (None, PLAIN, LENGTH, MASS * LENGTH**2)
 """Dimensions of vectors that have a size along each axis."""
 _AXES: dict[Dimension | None, int] = {LENGTH / TIME: 0, FREQUENCY: 1, FORCE: 1}
@@ -79,6 +81,8 @@ def read_expr(
     """The bound tree of a scalar, list or keyframe node; its type is not checked yet."""
     if unsure(node):
         return None
+    if shape is not None and shape[:1] == (None,) and isinstance(node, Scalar) and (several := _copies(node, names)):
+        node = Sequence(several, False, node.source, node.start, node.end)
     match node:
         case Scalar():
             return scalar_expr(node, names, found)
@@ -87,7 +91,11 @@ def read_expr(
                 found.error("wrong-shape", f"{what} is no list of times and values", node.span, help=help)
                 return None
             inner = () if shape is None else shape[1:]
-            items = [read_expr(item, inner, dimension, what, names, found) for item in node.items]
+            items = [
+                read_expr(one, inner, dimension, what, names.of_copy(item), found)
+                for item in node.items
+                for one in _copies(item, names) or [_point(item)]
+            ]
             if any(item is None for item in items):
                 return None
             if not (known := [item for item in items if item is not None]):
@@ -105,6 +113,20 @@ def read_expr(
             help = f"a name has one value: write `{node.span.text[1:-1]}`, each by itself" if what == "define" else help
             found.error("wrong-shape", f"{what} is a value, not a group of fields", node.span, help=help)
     return None
+
+
+def _copies(node: Node, names: Names) -> list[Node]:
+    """The outputs that one name of all copies stands for, ``bead.position``; [] for any other node."""
+    if not isinstance(node, Scalar) or names.field(node.text) is not None:
+        return []
+    each = names.copies_of(node.text)
+    return [Scalar(text, "text", False, node.source, node.start, node.end) for text in each]
+
+
+def _point(node: Node) -> Node:
+    """The place of a copied item, ``{repeat: {count: 5, as: i}, point: [...]}``; the node itself for any other."""
+    copied = isinstance(node, MappingNode) and node.index is not None and {*node.entries} == {POINT}
+    return node.entries[POINT] if copied else node  # type: ignore[union-attr]
 
 
 def scalar_expr(node: Scalar, names: Names, found: Diagnostics) -> Expr | None:
@@ -169,6 +191,8 @@ def _by_component(
                 help = help if inner.flow else f"keys stand in `keys`: write `keys:` in place of `{key}:`"
             if key == what and len(node.entries) == 1:
                 help = f"write the value alone, `{node.entries[key].span.text}`"
+            if node.index is not None and len(node.entries) == 1:
+                help = f"the place of a copy is its `point`: write `point: {inner.span.text}`"
             message = f"{what} has the components x, y, z, not '{key}'"
             found.error("unknown-field", message, node.keys[key].span, help=help)
             return None

@@ -36,7 +36,7 @@ LEAST = 0.1
 def within(mesh: ElementMesh, values: Floats) -> Callable[[Floats], Floats]:
     """The function of places (k, 3) [m] that has ``values`` (n, ...) at the nodes of a solid."""
     element, count = Simplex(3, 2 if mesh.element.edges else 1), len(mesh.points)
-    own = FieldMesh(element, mesh.points, mesh.cells, mesh.cells, count, (), (), (), (0.0, 0.0))
+    own = FieldMesh(element, mesh.points, mesh.cells, mesh.cells, count, (), (), ())
     between = BetweenNodes(own, None)
     return lambda places: between.weights(places)[0] @ values
 

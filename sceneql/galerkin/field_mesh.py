@@ -31,8 +31,15 @@ class FieldMesh:
     """(f,): index of the boundary piece of each outer side."""
     names: tuple[str, ...]
     """Names of the pieces."""
-    worst: tuple[float, float]
-    """Least and largest angle [rad]: of triangles, or between faces of tetrahedra."""
+
+    @property
+    def worst(self) -> tuple[float, float]:
+        """Least and largest angle [rad]: of triangles, or between faces of tetrahedra."""
+        from sceneql.bodies.elements.element_mesh import worst_angle
+        from sceneql.galerkin.plane_quality import angles
+
+        found = angles if self.element.dimension == 2 else worst_angle
+        return found(self.points, self.cells[:, : self.element.dimension + 1])
 
     @property
     def places(self) -> Floats:
@@ -49,8 +56,8 @@ class FieldMesh:
 
 def _sides(element: Simplex, corners: Floats, places: Floats) -> tuple[Floats, Floats]:
     """Jacobian (e, q, d, d) [m] by the barycentric coordinates after the first, and derivatives (.., q, nodes, d) of
-    the functions by them; ``places``: barycentric, (q, corners) or (e, q, corners)."""
-    slopes = element.slopes(places)
+    the functions by them; ``places``: barycentric, (q, corners) or (e, q, corners). Degree 1: q = 1, for all places."""
+    slopes = element.slopes(places[..., :1, :] if element.degree == 1 else places)
     local = slopes[..., 1:] - slopes[..., :1]
     return np.swapaxes(corners, 1, 2)[:, None] @ local, local
 
@@ -62,11 +69,11 @@ def sized(element: Simplex, corners: Floats, places: Floats) -> Floats:
     """
     sides, _ = _sides(element, corners, places)
     found: Floats = np.linalg.det(sides) / (2.0 if element.dimension == 2 else 6.0)
-    return found
+    return np.broadcast_to(found, (len(corners), places.shape[-2]))
 
 
 def gradients(element: Simplex, corners: Floats, places: Floats) -> Floats:
     """Gradients (e, q, nodes, d) [1/m] of the functions at barycentric ``places``."""
     sides, local = _sides(element, corners, places)
     found: Floats = local @ np.linalg.inv(sides)
-    return found
+    return np.broadcast_to(found, (len(corners), places.shape[-2], *found.shape[2:]))

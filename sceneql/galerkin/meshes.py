@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from sceneql.bodies.elements.element import elements
-from sceneql.bodies.elements.element_mesh import worst_angle
 from sceneql.bodies.elements.filled import filled
 from sceneql.bodies.filling.tetrahedra import edges
 from sceneql.failure import LimitRefused
 from sceneql.galerkin.field_mesh import FieldMesh
 from sceneql.galerkin.plane_mesh import TooCoarse, flat_mesh, outlined
-from sceneql.galerkin.plane_quality import angles, outer_sides
+from sceneql.galerkin.plane_quality import outer_sides
 from sceneql.galerkin.simplex import Simplex
 from sceneql.grids.domain.cells import SIDES, counts, periodic_axes
 from sceneql.grids.domain.domain import inside
@@ -78,8 +77,7 @@ def _object(model: Medium, degree: int, assembly: Assembly) -> FieldMesh:
     own = _outer(four)
     names = getattr(level, "names", (ref.name,))
     cells = made.cells.astype(np.int64)
-    worst = worst_angle(made.points, made.cells[:, :4])
-    return FieldMesh(element, made.points, cells, cells, len(made.points), own, np.zeros(len(own), int), names, worst)
+    return FieldMesh(element, made.points, cells, cells, len(made.points), own, np.zeros(len(own), int), names)
 
 
 def _outer(four: Any) -> Any:
@@ -146,7 +144,7 @@ def _flat_box(shape: tuple[int, ...], low: Floats, sides: Floats, element: Simpl
     second = np.where(even, np.stack([a, c, d], axis=1), np.stack([b, c, d], axis=1))
     triangles = np.concatenate([first, second])
     own, _ = outer_sides(triangles)
-    return flat_mesh(points, triangles, element, np.zeros(len(own), int), (), angles(points, triangles))
+    return flat_mesh(points, triangles, element, np.zeros(len(own), int), ())
 
 
 def _deep_box(shape: tuple[int, ...], low: Floats, sides: Floats, element: Simplex) -> FieldMesh:
@@ -168,5 +166,4 @@ def _deep_box(shape: tuple[int, ...], low: Floats, sides: Floats, element: Simpl
         points = np.concatenate([points, 0.5 * (points[ends[:, 0]] + points[ends[:, 1]])])
         cells = np.concatenate([four, len(points) - len(ends) + which], axis=1)
     own = _outer(four)
-    worst = worst_angle(points, four.astype(np.int32))
-    return FieldMesh(element, points, cells, cells, len(points), own, np.zeros(len(own), int), (), worst)
+    return FieldMesh(element, points, cells, cells, len(points), own, np.zeros(len(own), int), ())

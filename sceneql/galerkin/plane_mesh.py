@@ -9,7 +9,7 @@ import numpy as np
 
 from sceneql.galerkin import plane_corners
 from sceneql.galerkin.field_mesh import FieldMesh, sized
-from sceneql.galerkin.plane_quality import angles, delaunay, outer_sides, smoothed
+from sceneql.galerkin.plane_quality import delaunay, outer_sides, smoothed
 from sceneql.galerkin.plane_stuffing import Values, crossing, sides_of, stuffed
 from sceneql.galerkin.simplex import Simplex
 
@@ -69,8 +69,7 @@ def outlined(low: Floats, high: Floats, spacing: float, level: Any, element: Sim
     _, outer = outer_sides(triangles)
     middles = 0.5 * (points[outer[:, 0]] + points[outer[:, 1]])
     pieces = level.pieces(np.column_stack([middles, np.zeros(len(middles))]))
-    least, largest = angles(points, triangles)
-    straight = flat_mesh(points, triangles, element, pieces, level.names, (least, largest))
+    straight = flat_mesh(points, triangles, element, pieces, level.names)
     return straight if element.degree == 1 else _curved(straight, onto)
 
 
@@ -90,9 +89,7 @@ def _settled(points: Floats, triangles: Any, fixed: Any, onto: Any) -> Floats:
     return points
 
 
-def flat_mesh(
-    points: Floats, triangles: Any, element: Simplex, pieces: Any, names: tuple[str, ...], worst: tuple[float, float]
-) -> FieldMesh:
+def flat_mesh(points: Floats, triangles: Any, element: Simplex, pieces: Any, names: tuple[str, ...]) -> FieldMesh:
     """Mesh of triangles (t, 3) with points (n, 2) and straight sides; ``pieces``: of outer sides, in their order."""
     cells = triangles
     if element.degree == 2:
@@ -100,9 +97,7 @@ def flat_mesh(
         points = np.concatenate([points, 0.5 * (points[ends[:, 0]] + points[ends[:, 1]])])
         cells = np.concatenate([triangles, len(points) - len(ends) + which[:, [2, 0, 1]]], axis=1)
     own, _ = outer_sides(triangles)
-    return FieldMesh(
-        element, points, cells.astype(np.int64), cells.astype(np.int64), len(points), own, pieces, names, worst
-    )
+    return FieldMesh(element, points, cells.astype(np.int64), cells.astype(np.int64), len(points), own, pieces, names)
 
 
 def _distinct(corners: Floats, spacing: float) -> Floats:

@@ -97,7 +97,10 @@ class WeakForm:
         for first in range(0, len(held), CHUNK):
             chosen = slice(first, first + CHUNK)
             slopes = self.gradients(chosen)
-            parts.append(np.einsum("eq,eqia,eqja->eij", held[chosen], slopes, slopes, optimize=True))
+            if self.mesh.element.degree == 1:
+                parts.append(held[chosen].sum(axis=1)[:, None, None] * (slopes[:, 0] @ slopes[:, 0].swapaxes(1, 2)))
+            else:
+                parts.append(np.einsum("eq,eqia,eqja->eij", held[chosen], slopes, slopes, optimize=True))
         return self.gathered(np.concatenate(parts))
 
     def gathered(self, blocks: Floats, owners: Any = slice(None)) -> Any:

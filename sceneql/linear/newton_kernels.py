@@ -56,7 +56,7 @@ CLEAR = 0.9
 UNSEEN = 0.05
 """Least contraction that is assumed before two updates measure it."""
 TINY = 0.01
-"""Update, in units of the tolerance, below which a single one may end the iteration."""
+"""Update, in units of the tolerance, below which a single one may end the iteration; the residual, of a field."""
 LOADED, LOOSELY = 1e-3, 0.1
 """Part by which loads of friction may differ from those that the stage was solved with; the most, a hundred times the
 relative tolerance."""
@@ -182,10 +182,10 @@ def unlike(memory):
 
 @lean_inlined
 def remain(functions, t, a, base, y, residual, plan, floats, ints):
-    """What `leave` does. Where surfaces are kept apart tallies, on which nothing depends, follow: the work of an impact
-    would be the last to converge."""
+    """What `leave` does. Where surfaces are kept apart, and on elements of fields, tallies, on which nothing depends,
+    follow: the work of an impact, or the heat that flowed in, would be the last to converge."""
     leave(rate_at(functions[AT_RATE]), t, a, base, y, residual, plan, floats, ints)
-    if functions[AT_LIMIT] != 0:
+    if functions[AT_LIMIT] != 0 or plan[ROUNDED] == 1:
         for k in range(plan[TALLIES_AT], plan[TALLIES_AT] + plan[TALLIES]):
             y[plan[k]] += residual[plan[k]]
             residual[plan[k]] = 0.0
@@ -251,6 +251,9 @@ def converge(functions, t, a, base, y0, y, scratch, jacobian, store, scales, mem
         # Steps of a given length have no other error estimate: there, the contraction must come from two updates.
         done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
         done = done or (since > 0 and max(size, before) <= noise)
+        # The systems of fields damp: the next change is no larger than what is left over now.
+        if plan[ROUNDED] == 1 and not done and size < math.inf:
+            done = largest(residual, y0, y, memory) <= TINY
         # Where a few masses still buckle, by less than the tolerance, the largest update does not predict the next.
         if careful and since > 0 and size <= memory[SHARE]:
             done = done or mean * mean <= memory[SHARE] * (before_mean - mean)

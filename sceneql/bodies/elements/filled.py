@@ -273,11 +273,18 @@ def _whole(inside: Inside, spacing: float, points: Floats) -> None:
     if np.prod(counts, dtype=float) > MOST_LOOKED_AT:
         counts = np.ceil((inside.high - inside.low) / (0.5 * spacing)).astype(int) + 1
     axes = [np.linspace(low, high, n) for low, high, n in zip(inside.low, inside.high, counts, strict=True)]
-    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    places = places[np.asarray(inside.holds(places))]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    held = np.asarray(inside.holds(grid.reshape(-1, 3))).reshape(grid.shape[:3])
+    tree = cKDTree(points)
+    # Whatever is beside a place with a node near it has that node near it, too.
+    some = np.full(held.shape, np.inf)[::2, ::2, ::2]
+    some[held[::2, ::2, ::2]] = tree.query(grid[::2, ::2, ::2][held[::2, ::2, ::2]])[0]
+    beside = np.ix_(*(np.arange(count) // 2 for count in counts))
+    near = some[beside] + np.linalg.norm(grid - grid[::2, ::2, ::2][beside], axis=-1) <= THIN * spacing
+    places = grid[held & ~near]
     if not len(places):
         return
-    away, _ = cKDTree(points).query(places)
+    away, _ = tree.query(places)
     k = int(np.argmax(away))
     if away[k] > THIN * spacing:
         where = ", ".join(f"{c:.3g}" for c in inside.in_world(places)[k])

@@ -116,20 +116,7 @@ def _corners(
     points: Floats, sides: Any, normals: Floats, spacing: float, holds: Holds, crossing: Crossing
 ) -> tuple[Floats, Floats]:
     """Corners (c, 3) [m] where three surfaces near an outer point meet, and normals (c, 3, 3) of these nearby."""
-    beside: dict[int, set[int]] = {}
-    for a, b in sides.tolist():
-        beside.setdefault(a, set()).add(b)
-        beside.setdefault(b, set()).add(a)
-    threes: list[tuple[int, ...]] = []
-    for vertex, ring in beside.items():
-        near = sorted(set().union(ring, *(beside[other] for other in ring)))
-        known = np.array([other for other in near if not np.isnan(normals[other, 0])], dtype=np.int64)
-        known = known[np.argsort(np.linalg.norm(points[known] - points[vertex], axis=1), kind="stable")]
-        kinds: list[int] = []
-        for other in known.tolist():
-            if len(kinds) < MOST_KINDS and (normals[kinds] @ normals[other] < CREASE).all():
-                kinds.append(other)
-        threes += combinations(sorted(kinds), 3)
+    threes = [three for kinds in _kinds(points, sides, normals) for three in combinations(sorted(kinds), 3)]
     some = np.array(sorted(set(threes)), dtype=np.int64).reshape(-1, 3)
     some = some[np.abs(np.linalg.det(normals[some])) > LEAST_CORNER]
     planes, at = normals[some], points[some]
@@ -149,6 +136,34 @@ def _corners(
         if all(np.linalg.norm(places[k] - places[other]) > BESIDE * spacing for other in found):
             found.append(k)
     return places[found], planes[found]
+
+
+def _kinds(points: Floats, sides: Any, normals: Floats) -> list[list[int]]:
+    """Of each outer point the nearest ones, up to two edges away, whose tangent planes differ, at most MOST_KINDS."""
+    from scipy.sparse import csr_array
+
+    outer, ends = np.unique(sides, return_inverse=True)
+    one, two = ends.reshape(-1, 2).T
+    both = np.concatenate([one, two]), np.concatenate([two, one])
+    beside = csr_array((np.ones(2 * len(one)), both), shape=(len(outer),) * 2)
+    near = (beside + beside @ beside).tocoo()
+    of, other = outer[near.row], outer[near.col]
+    known = ~np.isnan(normals[other, 0])
+    of, other = of[known], other[known]
+    order = np.lexsort((other, np.linalg.norm(points[other] - points[of], axis=1), of))
+    of, other = of[order], other[order]
+    first = np.flatnonzero(np.diff(of, prepend=-1))
+    counts = np.diff(first, append=len(of))
+    kinds = np.full((len(first), MOST_KINDS), -1, dtype=np.int64)
+    found = np.zeros(len(first), dtype=np.int64)
+    for k in range(int(counts.max(initial=0))):
+        rows = np.flatnonzero((counts > k) & (found < MOST_KINDS))
+        one = other[first[rows] + k]
+        alike = np.einsum("nki,ni->nk", normals[kinds[rows]], normals[one]) >= CREASE
+        rows, one = (part[~(alike & (kinds[rows] >= 0)).any(axis=1)] for part in (rows, one))
+        kinds[rows, found[rows]] = one
+        found[rows] += 1
+    return [row[:count] for row, count in zip(kinds.tolist(), found.tolist(), strict=True) if count > 2]
 
 
 def _nearest(points: Floats, corners: Floats, spacing: float) -> list[tuple[int, int]]:
@@ -209,7 +224,11 @@ def _targets(points: Floats, normals: Floats, sides: Any) -> Any:
         beside.setdefault(a, []).append(b)
         beside.setdefault(b, []).append(a)
     found = []
+    bent = np.isnan(normals[:, 0])
+    bent[sides[~(np.einsum("si,si->s", normals[sides[:, 0]], normals[sides[:, 1]]) >= CREASE)]] = True
     for vertex, ring in beside.items():
+        if not bent[vertex]:
+            continue
         known = [other for other in ring if not np.isnan(normals[other, 0])]
         pairs = list(combinations(known, 2)) if np.isnan(normals[vertex, 0]) else [(vertex, other) for other in known]
         some = np.array(pairs, dtype=np.int64).reshape(-1, 2)

@@ -18,6 +18,7 @@ from sceneql.compiler.meant.together import filled, together
 from sceneql.compiler.meant.unwrapped import unwrapped
 from sceneql.compiler.names import Vocabulary
 from sceneql.kinds import written_name
+from sceneql.language.one_line import one_line
 from sceneql.language.replaced import word_of
 from sceneql.language.scope import Entry
 from sceneql.language.script import Script
@@ -69,6 +70,12 @@ def report_unknown(
     offer = renamed or (lambda field, value: (True, f"did you mean '{field}'?"))
     unknown = [name for name in node.entries if name not in known]
     told: dict[str, list[str]] = {}
+    clean = not unknown
+    for field in [name[:-2] for name in unknown if name.endswith(".0") and name[:-2] in known]:
+        items = f"copies are the items of a list: write `{field}: [{one_line(node.entries[f'{field}.0'])}]`"
+        message = f"{field} is one field, of which there are no copies"
+        found.error("unknown-field", message, node.keys[f"{field}.0"].span, help=items)
+        unknown = [name for name in unknown if name.rpartition(".")[0] != field]
     for name in unknown:
         help = together(name, unknown, node, known)
         help = (
@@ -111,7 +118,7 @@ def report_unknown(
     for help, names in told.items():
         text = f"field '{names[0]}'" if len(names) == 1 else f"fields {', '.join(map(repr, names))}"
         found.error("unknown-field", f"{title} has no {text}", node.keys[names[0]].span, help=help.rstrip(WITHOUT))
-    return not unknown
+    return clean
 
 
 def _like(
