@@ -308,7 +308,7 @@ class Tie(Interaction):
     )
     breaks: Annotated[float, Quantity(FORCE)] | None = field(
         "Force above which it is gone: at that instant where a tolerance chooses the steps and nothing collides, else "
-        "at the end of a step; by default it never is.",
+        "at the end of a step of at most 1/240 s; by default never.",
         None,
         above=0,
     )
