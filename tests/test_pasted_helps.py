@@ -58,6 +58,7 @@ NOT_ALONE = {
         "unknown-word.first-day",
         "unknown-word.other-programs",
         "a list item of words",
+        "a spring to a place",
     ),
 }
 """Why, and which scripts and mistakes have a help that does not stand alone."""
