@@ -124,3 +124,20 @@ def test_what_to_write_is_what_the_script_has(tmp_path):
         load(scene)
     assert "For example `in: air`" in str(told.value)
     assert "write `initial: {velocity: [1 m/s, 0 m/s]}`" in str(told.value)
+
+
+def test_a_probe_reads_velocity_and_pressure_between_cells(tmp_path):
+    """Flow against a wall, u = (x, -y), whose pressure is -density |x|^2/2."""
+    side = '{rest: {inflow: {velocity: "[x, -y]"}}, bottom: {wall: {slip: free}}}'
+    more = {"corner": "-1 0 m", "size": "2 1 m", "initial": '{velocity: "[x, -y]"}', "advection": "central"}
+    probes = "{here: 0.13 0.57 m, there: -0.5 0.3 m}"
+    air = Air(tmp_path, boundary=side, probes=probes, **more).at(0.1)
+    assert air.read("here.velocity") == pytest.approx([0.13, -0.57, 0], abs=1e-6)
+    jump = air.read("here.pressure") - air.read("there.pressure")
+    assert jump == pytest.approx(-0.5 * (0.13**2 + 0.57**2 - 0.25 - 0.09), abs=2e-3)
+
+
+def test_a_probe_that_cannot_be_read_is_told(tmp_path):
+    for probes, text in (("{speed: 0.5 0.5 m}", "cannot be called"), ("{far: 2 0.5 m}", "stands outside of the box")):
+        with pytest.raises(ScriptError, match=text):
+            Air(tmp_path, probes=probes)

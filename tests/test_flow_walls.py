@@ -194,3 +194,17 @@ def test_a_run_whose_iterations_lead_nowhere_fails_at_its_flow(tmp_path, solver,
         floats[at : at + count] -= np.random.default_rng(0).uniform(0.0, 1e2, count)
     with pytest.raises(RunFailure, match=r"at 0.1 s, air: .* the pressure and viscosity of a step are not solved for"):
         air.at(0.5)
+
+
+def test_the_torque_of_a_drum_that_fluid_comes_to_turn_with_is_known_between_steps_of_a_tolerance(tmp_path):
+    """Spin-up from rest: 4 pi mu R^2 sum over the zeros b of J1 of exp(-nu (b/R)^2 t) (Batchelor 1967, section 4.3)."""
+    from scipy.special import jn_zeros
+
+    drum = "{cylinder: {radius: 0.5 m, height: 2 m, rotation: {about: x, angle: 90 deg}}}"
+    air = Air(
+        tmp_path, "{auto: {}}", 0.7, before=f"objects: {{drum: {drum}}}\n", size=None, domain="drum", flat="yes",
+        cell="1/32 m", boundary='{drum: {wall: {velocity: "[-y, x]"}}}',
+    )  # fmt: skip
+    for time in (0.4, 0.45, 0.5, 0.65):
+        exact = -0.05 * np.pi * np.exp(-0.2 * jn_zeros(1, 9) ** 2 * time).sum()
+        assert air.at(time).read("drum.torque")[2] == pytest.approx(exact, rel=0.02)

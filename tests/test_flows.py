@@ -176,6 +176,15 @@ def test_the_pressure_outside_drives_a_flow(tmp_path):
     assert air.read("velocity")[:, 0].mean() == pytest.approx(0.01 / (12 * 0.5), rel=0.01)
 
 
+@pytest.mark.parametrize("viscosity", ["1e-3 Pa*s", "1e-3*(1 + x)"])
+def test_what_a_pressure_sets_moving_comes_to_the_speed_of_bernoulli(tmp_path, viscosity):
+    """Fluid that rests outside: L du/dt = p/density - u^2/2."""
+    sides = "{rest: {wall: {slip: free}}, left: {outflow: {pressure: 4 Pa}}, right: {outflow: {}}}"
+    size = {"size": "1 0.25 m", "density": "2 kg/m^3", "cell": "1/8 m"}
+    air = Air(tmp_path, "{auto: {}}", 1.0, boundary=sides, viscosity=viscosity, **size).at(1.0)
+    assert air.read("largest_speed") == pytest.approx(2.0 * np.tanh(1.0), rel=2e-3)
+
+
 # --- solids ---
 
 

@@ -477,6 +477,20 @@ solvers: {{main: {{{solver}}}}}
     assert abs(rows[-1][2]) < 1e-7
 
 
+def test_what_rests_under_a_growing_load_goes_when_it_is_too_large(tmp_path):
+    """A step as long as the clock went over the break: the weld was gone, and the body stood still to the end."""
+    script = """
+clock: {end: 4 s}
+models: {b: {rigid: {mass: 10 kg, inertia: 1 1 1 kg*m^2}}}
+ties: {glue: {weld: {between: [b, world], breaks: 150 N}}}
+forces: [gravity, {force: {on: [b], components: ["0", "-20*t", "0"]}}]
+"""
+    gone = (150 - 98.1) / 20
+    exact = 9.81 * (4 - gone) ** 2 / 2 + 2 * (4**3 / 6 - gone**2 * 4 / 2 + gone**3 / 3)
+    ((fallen, fast),) = watch(tmp_path, script, [4.0], "b.center", "b.velocity")
+    assert -fallen[1] == pytest.approx(exact, abs=abs(fast[1]) / 240)
+
+
 @pytest.mark.parametrize(("inner", "sense"), [("no", -1), ("yes", 1)])
 def test_gears_turn_by_as_many_teeth_over_many_turns(tmp_path, inner, sense):
     script = f"""

@@ -29,6 +29,7 @@ from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.left_behind import warn_of_left_behind, warn_of_one_place
 from sceneql.compiler.passes.outside_flows import report_outside_flows, warn_of_sections
 from sceneql.compiler.passes.overlaps import report_overlaps
+from sceneql.compiler.passes.own_shapes import report_placeless
 from sceneql.compiler.passes.probes import report_probes
 from sceneql.compiler.passes.prune import prune
 from sceneql.compiler.passes.readable import report_unreadable
@@ -69,6 +70,7 @@ def compile_script(
     checked = check(script, catalogue, found, parsed)
     check_studies(checked.settings.studies, script.root, catalogue, KEYS, found)
     report_circles(checked.tasks, found)
+    report_placeless(checked.tasks, found)
     background = checked.settings.background is not None
     tasks = expand(checked.tasks, catalogue, without=checked.without, implied=checked.implied, background=background)
     report_hollow(tasks, found)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from sceneql.compiler.meant.by_clock import in_parts
 from sceneql.kinds import Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, broken, unsure
@@ -51,6 +52,9 @@ def read_keys(
         found.error("wrong-shape", "keys are written `{time: value, ...}`", table.span, help=help)
         return None
     fields = KEY_FIELDS if slope is not None else KEY_FIELDS[:1]
+    if (parts := in_parts(table)) is not None:
+        found.error("dimension-mismatch", "keys stand at times, not at parts", table.span, help=f"write `{parts}`")
+        return None
     keys: list[Key] = []
     last = -math.inf
     for name, item in table.entries.items():

@@ -23,7 +23,7 @@ from sceneql.quantities.literal import WORD
 from sceneql.quantities.operations import CONSTANTS
 from sceneql.quantities.other_words import OURS
 from sceneql.quantities.parser import parse_value
-from sceneql.quantities.spaced import declared
+from sceneql.quantities.spaced import at_rate, declared
 from sceneql.quantities.span import Span
 from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import continues_unit, in_words, unit_hint
@@ -207,7 +207,9 @@ class Names:
         inside = part if self.scope is None else self.scope.resolve(f"{part}.0").removesuffix(".0")
         every = (f"{inside}.{k}" for k in count())
         copies = takewhile(lambda copy: copy in self.parts or f"{copy}.{output}" in self.given, every)
-        return [f"{copy}.{output}" for copy in copies]
+        found = [f"{copy}.{output}" for copy in copies]
+        known = self.outputs_of(f"{inside}.0") if f"{inside}.0" in self.parts else None
+        return [] if known and not self.gives(f"{inside}.0.{output}") and not self.unsure(f"{inside}.0") else found
 
     def of_copy(self, node: Node) -> Names:
         """These names with the number of a copy that `repeat` made inside of a list; the same for other nodes."""
@@ -296,18 +298,19 @@ class Names:
             message = f"there is no unit '{wanted}', and nothing is called so"
             meant = (parts[-1].lower(), *OURS.get(wanted, ()))
             constant = next((name for name in meant if name in CONSTANTS), None)
-            help = f"did you mean '{constant}'?" if constant else unit_hint(wanted) or suggestion(wanted, self.defines)
+            rated = at_rate(unit_hint(wanted), span.source.text)
+            help = f"did you mean '{constant}'?" if constant else rated or suggestion(wanted, self.defines)
             help = help or "units are such as m, s, kg, N or deg: `sceneql words units`"
             return Diagnostic("unknown-unit", message, span, help)
+        hint: str | None
         message, parts_known = f"nothing is called '{wanted}'", list(self.parts)
         if wanted in parts_known:
             message = f"'{wanted}' is a part, not a value"
             some = f"write one of its outputs, such as '{self._some_output(wanted)}'"
-            hint: str | None = (
-                some if self.outputs_of(wanted) != {} else instead("name", wanted) or "it has no values to read"
-            )
+            hint = some if self.outputs_of(wanted) != {} else instead("name", wanted) or "it has no values to read"
         else:
-            hint = self._copy_number(wanted) or self._of_copies(wanted) or instead("name", wanted)
+            hint = self._copy_number(wanted) or self._of_copies(wanted)
+            hint = hint or at_rate(instead("name", wanted), span.source.text)
             hint = hint or (output_alone(wanted, self._giving) if len(parts) == 1 < len(wanted) else None)
             hint = hint or suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time", *CONSTANTS])
             model = None if hint else self.model_of(parts[0])
@@ -354,6 +357,8 @@ class Names:
     def _of_copies(self, wanted: str) -> str | None:
         """The help for the name, or an output, of a part that `repeat` made many of, where one value is wanted."""
         part, _, output = (wanted, "", "position") if f"{wanted}.0" in self.parts else wanted.rpartition(".")
+        if f"{part}.0" in self.parts and output.endswith("s") and self.gives(f"{part}.0.{output[:-1]}"):
+            output = output[:-1]  # positions
         if f"{part}.0" not in self.parts or (known := self.outputs_of(f"{part}.0")) is None or output not in known:
             return None
         help = f"its copies are {part}.0, {part}.1, ...: one is `{part}.0.{output}`"

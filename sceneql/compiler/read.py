@@ -19,7 +19,7 @@ from sceneql import kinds
 from sceneql.compiler import limits, paint, values
 from sceneql.compiler.annotations import could_be, is_fixed, unwrap
 from sceneql.compiler.formulas import Wanted, read_formula
-from sceneql.compiler.meant import by_side, likely, under_names
+from sceneql.compiler.meant import by_side, likely, picture_sizes, under_names
 from sceneql.compiler.meant import quantity_help as helped
 from sceneql.compiler.meant.chained import improve
 from sceneql.compiler.meant.quantity_help import TRUE
@@ -202,7 +202,7 @@ class Reader:
         if base is str:
             if isinstance(node, Scalar):
                 return node.text
-            raise self._fail("wrong-shape", f"{what} is a text", node.span)
+            raise self._fail("wrong-shape", f"{what} is a text", node.span, under_names.text_meant(node, what))
         if base is Any:
             return node
         raise TypeError(f"no reading for {annotation!r}")
@@ -270,15 +270,7 @@ class Reader:
                 return choice
         every = ", ".join(str(c) for c in choices)
         if other:
-            several = text.replace("x", " ").replace("*", " ").split()  # 640x360
-            hint = (
-                f"write `{text}p`"
-                if f"{text}p" in map(str, choices)
-                else likely.choice_meant(text, list(map(str, choices)))
-            )
-            if text.isdecimal() and int(text[:6]) >= 16 and hint != f"write `{text}p`":
-                hint = f"write `{text} {max(2, 2 * round(int(text[:6]) * 9 / 32))}`, its width and its height"
-            hint = f"write `{' '.join(several)}`" if len(several) > 1 and "".join(several).isdecimal() else hint
+            hint = picture_sizes.size_meant(text, choices) or likely.choice_meant(text, list(map(str, choices)))
             raise self._fail("unknown-choice", f"{what} is {other} or one of {every}, not '{text}'", node.span, hint)
         hint = likely.choice_meant(text, [str(c) for c in choices]) or f"one of {every}"
         hint = f"it is always `{what}: {every}`" if len(choices) == 1 else hint
@@ -350,6 +342,8 @@ class Reader:
             better = by_side.parts_at_sides(self, node, arms[1], what)
             better = better or under_names.by_name(node, arms[1], bool(unwrap(arms[0])[1]))
             raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, better)
+        if (better := under_names.nameless(node, arms[1], what)) is not None:
+            raise self._fail("wrong-shape", f"{what} holds parts, each with a name of its own", node.span, better)
         named, result, ok = unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():
             if (other := numbered(name)) is not None:

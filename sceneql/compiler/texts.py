@@ -23,6 +23,8 @@ _TEX = re.compile(r"\$([^${}]*[\\^_=][^$]*)\$")
 """A formula of TeX between dollar signs."""
 LONGEST_TEX = 500
 """Longest text in which a formula is looked for."""
+_UNIT_BEHIND = re.compile(r"\}\s?((?:[µ°]?[A-Za-z]{1,3}|°)(?:[/*^][\w^]+)*)(?![\w(])")
+"""A unit directly behind a value's braces."""
 _DOLLAR = re.compile(r"\$([^\W\d]\w*)")
 _SIGN = re.compile(r"\$(\{[^{}]*\})")
 _LINK = re.compile(r"[^\W\d]\w*(?:\.\w+)+")
@@ -77,7 +79,10 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
             whole = f"{text[: form.start()]}{{{values[1]}:{form[1]}{unit}}}"
             help = f'a text has its values in braces, with their form and unit: write `"{whole}"`'
         if text[: form.start()].endswith(":"):  # {energy:%.2f}
-            help = f"write `{text[: form.start()]}{form[1]}{text[form.end() :]}`"
+            rest = text[form.end() :]
+            behind = _UNIT_BEHIND.match(rest)
+            rest = rest if behind is None else f" {behind[1]}}}{rest[behind.end() :]}"
+            help = f'write `{what}: "{text[: form.start()]}{form[1]}{rest}"`'
         found.error("syntax", f"'{form[0]}' would be drawn as it stands", node.span, help=help)
         return None
     if (sign := _SIGN.search(text)) is not None:
@@ -120,9 +125,20 @@ def _twice(pieces: list[str | TextValue], place: Span, found: Diagnostics) -> bo
             write = f"{{{value}:{piece.form} {unit.text}}}"
             told = f"'{unit.text}' behind these braces would stand there twice"
             help = f"a value tells its unit itself: write `{write}`, and none behind the braces"
+            if (whole := _once(place.text, unit.text)) is not None:
+                help = f"a value tells its unit itself: write `{whole}`"
             found.error("unit-twice", told, place, help=help)
             return True
     return False
+
+
+def _once(text: str, unit: str) -> str | None:
+    """A text with the only unit of this name that stands behind braces in the braces; None where there are more."""
+    pattern = re.compile(
+        rf"\{{([^{{}}:]*)(?::([^{{}}\s]*))?(?:\s+{re.escape(unit)})?\}}\s?{re.escape(unit)}(?![\w/*^])"
+    )
+    found = pattern.findall(text)
+    return pattern.sub(lambda one: f"{{{one[1]}:{one[2] or ''} {unit}}}", text) if len(found) == 1 else None
 
 
 def _told(

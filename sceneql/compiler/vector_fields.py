@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from sceneql.compiler.meant.by_clock import interpolated
 from sceneql.language.tree import Mapping, Sequence
 from sceneql.quantities.dimension import ANGLE, Dimension
 from sceneql.quantities.literal import vector_meant
@@ -28,6 +29,8 @@ def vector_meant_by(node: Mapping, what: str) -> str | None:
 
     ``what``: the vector's own field.
     """
+    if (keys := interpolated(node)) is not None:
+        return f"write `{what}: {keys}`"
     return timed(node) or _polar(node) or _by_side(node) or _from_to(node) or _placed(node, what.rpartition(".")[2])
 
 

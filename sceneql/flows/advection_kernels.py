@@ -3,7 +3,8 @@
 
 Momentum is conserved; values at faces of these cells are central (energy is conserved too: Harlow & Welch 1965;
 Morinishi et al. 1998), upwind, or upwind with half a limited slope (Koren 1993). Where fluid comes in through an open
-side, it brings no momentum: so what comes back in there cannot grow (Bruneau & Fabrie 1994).
+side, it brings half the momentum of what is there: so the pressure given is that of fluid at rest outside (Bernoulli),
+and what comes back in brings no energy and cannot grow (Bruneau & Fabrie 1994).
 """
 
 from numba import types
@@ -130,6 +131,12 @@ def beyond(value, weight, own):
 
 
 @lean_inlined
+def leaving(out):
+    """What flows out of an open side; of what comes in half, as it brings half the momentum."""
+    return out if out > 0.0 else 0.5 * out
+
+
+@lean_inlined
 def along_row(u, through, area, component, j, k, room, floats, ints):
     """Momentum that crosses the ends of the own cells of a row along x: flux[i] and flux[i + 1] those of face i."""
     nx, ny, _ = sides(component, ints)
@@ -158,7 +165,7 @@ def along_row(u, through, area, component, j, k, room, floats, ints):
     carried(ints[SCHEME], flows[1:], padded[1:], padded[2:], padded[3:], padded[4:], flux[1:], nx - 1)
     if component == 0:
         out, last = area * through[row], area * through[row + nx - 1]
-        flux[0], flux[nx] = min(out, 0.0) * u[row], max(last, 0.0) * u[row + nx - 1]
+        flux[0], flux[nx] = leaving(-out) * -u[row], leaving(last) * u[row + nx - 1]
     else:
         flux[0] = flows[0] * (values[low + edges] if flows[0] > 0.0 else u[row])
         flux[nx] = flows[nx] * (values[high + edges] if flows[nx] < 0.0 else u[row + nx - 1])
@@ -178,7 +185,7 @@ def across_row(u, through, area, component, axis, place, j, k, flux, room, float
         if component == axis:
             for i in range(nx):
                 out = area * through[row + i]
-                flux[i] = (max(out, 0.0) if high else min(out, 0.0)) * u[row + i]
+                flux[i] = (leaving(out) if high else -leaving(-out)) * u[row + i]
             return
         first = ints[EDGE_FIRST + 6 * component + 2 * axis + high] + nx * (k if axis == 1 else j)
         given = floats[ints[EDGE_VALUES] + first :]

@@ -70,7 +70,9 @@ class Inflow(Record):
 class Outflow(Record):
     """Where the pressure is given, and fluid leaves as the rest of the flow has it."""
 
-    pressure: Annotated[float, Quantity(dim.PRESSURE)] = field("The pressure there.", 0.0)
+    pressure: Annotated[float, Quantity(dim.PRESSURE)] = field(
+        "The pressure there; where fluid comes in, that of what rests outside.", 0.0
+    )
 
 
 class Side(Record):

@@ -70,6 +70,46 @@ def measure(
     return np.array([*parts, 0.0][:3])
 
 
+def at_place(
+    what: str, place: Sequence[float], cells: FieldLayout, ints: tuple[int, ...], density: float, state: ModelState
+) -> Any:
+    """`velocity` (3,) [m/s] or `pressure` [Pa] at a place (2,) or (3,) [m], linear between what is known around it.
+
+    Velocities are known at faces, the pressure at centers of cells outside of solids; at the boundary the nearest are
+    taken.
+    """
+    axes = ints[layout.AXES]
+    index = [(x - low) / side for x, low, side in zip(place, cells.low, cells.spacing, strict=False)][:axes]
+    index += [0.5] * (axes - len(index))
+    if what == "pressure":
+        values = measure("pressure", cells, ints, density, state).reshape(cells.shape[::-1])
+        volumes = state.floats[cells.volumes_at : cells.volumes_at + cells.count].reshape(values.shape)
+        places, weights = _around([x - 0.5 for x in index], cells.shape, ints)
+        weights = weights * (volumes[places] > 0.0)
+        return float((weights * values[places]).sum() / weights.sum()) if weights.any() else 0.0
+    found = np.zeros(3)
+    for axis, u in enumerate(components(ints, state.y)):
+        places, weights = _around([x - 0.5 * (k != axis) for k, x in enumerate(index)], u.shape[::-1], ints)
+        found[axis] = (weights * u[places]).sum()
+    return found
+
+
+def _around(index: Sequence[float], shape: Sequence[int], ints: tuple[int, ...]) -> tuple[Any, Any]:
+    """Indices (z, y, x) of the 2^axes numbers around a place, given in steps from the first, and their weights."""
+    ends, shares = [], []
+    for axis, at in enumerate(index):
+        first, count = int(np.floor(at)), shape[axis]
+        pair = np.array([first, first + 1])
+        ends.append(pair % count if ints[layout.PERIODIC + axis] else pair.clip(0, count - 1))
+        shares.append(np.array([first + 1 - at, at - first]))
+    while len(ends) < 3:
+        ends.append(np.array([0]))
+        shares.append(np.array([1.0]))
+    places = np.meshgrid(*ends[::-1], indexing="ij")
+    weights = np.einsum("k,j,i->kji", *shares[::-1])
+    return tuple(places), weights
+
+
 def components(ints: tuple[int, ...], y: Floats) -> list[Floats]:
     """For each component its velocities at its faces, (nz, ny, nx) views of y."""
     found = []

@@ -19,6 +19,14 @@ TIMES = ("t", "time")
 _DERIVATIVES = tuple(map(re.compile, (r"d(\w+)/dt", r"d(\w+)", r"(\w+?)_?dot")))
 
 
+_SECOND = re.compile(r"(\w+?)_?(?:ddot|dotdot|dd|tt)")
+
+
+def _first_of(name: str, state: str) -> bool:
+    """Whether a name is that of a state's rate in other notations, ``a_dot`` or ``v`` of ``x``."""
+    return any((found := shape.fullmatch(name)) is not None and found[1] == state for shape in _DERIVATIVES)
+
+
 def states(rows: Iterable[str]) -> list[str]:
     """The states of rows named ``y`` (first order) or ``a''`` (second order: a and a').
 
@@ -107,6 +115,9 @@ class Rows:
     def _row_problems(self) -> Iterator[Problem]:
         if not self.rate:
             yield Problem("a system needs a rate: `y: ...` is dy/dt, `a'': ...` is d²a/dt²", ("rate",))
+        if (dotted := self._dotted()) is not None:
+            yield dotted
+            return
         called = {row: name for row in self.rate if row not in self.start and (name := derived(row, self.start))}
         for row, name in called.items():
             help = None if (span := self.rate[row].span) is None else f"write `{name}: {span.text}`"
@@ -142,6 +153,29 @@ class Rows:
                 yield Problem(
                     f"{name} has a value at the start but no rate{f': {hint}' if hint else ''}", ("start", name)
                 )
+
+    def _dotted(self) -> Problem | None:
+        """The problem of derivatives that are written with letters, ``a_dot`` and ``a_ddot``, where strokes tell them.
+
+        None where there are none of second order.
+        """
+        names = {row: found[1] for row in self.rate if (found := _SECOND.fullmatch(row)) is not None}
+        first = {name: of for name in self.start for of in names.values() if _first_of(name, of)}
+        if not names or not {*names.values()} <= {*self.start}:
+            return None
+        texts = {key: expr.span.text if expr.span else "..." for key, expr in self.start.items()}
+        start = ", ".join(f"{first[key]}': {text}" if key in first else f"{key}: {text}" for key, text in texts.items())
+        rates = []
+        for row, expr in self.rate.items():
+            if row in first:
+                continue
+            text = expr.span.text if expr.span else "..."
+            for name, of in first.items():
+                text = re.sub(rf"(?<![\w.]){name}\b", f"{of}'", text)
+            rates.append(f"{names[row]}'': {text}" if row in names else f"{row}: {text}")
+        row = next(iter(names))
+        help = f"derivatives have strokes: write `start: {{{start}}}, rate: {{{', '.join(rates)}}}`"
+        return Problem(f"'{row}' is no state: it is {names[row]}''", ("rate", row), True, help=help)
 
     def _name_problems(self) -> Iterator[Problem]:
         taken = dict.fromkeys(TIMES, "the time")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol
 
 from sceneql import kinds
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, centers_of, counts, too_far
+from sceneql.grids.probing import misnamed, outside
 from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Record, Symbols, field, quantity_type
 from sceneql.kinds.probed import Probed
 from sceneql.kinds.stable_step import StaticScene
@@ -262,11 +263,7 @@ class Medium(Model):
         """Problems of domain, cells, formulas, probes and names of boundary parts."""
         if (self.size is None) == (self.domain is None):
             yield Problem("it spreads in one of the two: a box, `size: 1 1 m`, or an object, `domain: plate`")
-        for name, place in self.probes.items():
-            if name in MEASURES or name in self.measures or not name.isidentifier():
-                yield Problem(f"a probe cannot be called '{name}'", ("probes", name), at_key=True)
-            if len(place) not in (2, 3):
-                yield Problem("a probe stands at two or three numbers, `0.5 0.2 m`", ("probes", name))
+        yield from misnamed(self.probes, (*MEASURES, *self.measures))
         if self.cell < SHORTEST:
             yield Problem(f"a cell is at least {SHORTEST:g} m", ("cell",), code="out-of-range")
             return
@@ -281,12 +278,7 @@ class Medium(Model):
         corner = self.corner or (0.0,) * len(self.size)
         if wrong := too_far(corner, self.cell):
             yield Problem(wrong, ("corner",), code="out-of-range")
-        for name, place in self.probes.items():
-            if any(not 0.0 <= x - low <= side for x, low, side in zip(place, corner, self.size, strict=False)):
-                ends = corner, [low + side for low, side in zip(corner, self.size, strict=True)]
-                box = " to ".join(", ".join(f"{x:g}" for x in end) for end in ends)
-                text = f"the probe '{name}' stands outside of the box from {box} m"
-                yield Problem(text, ("probes", name), code="probe-outside")
+        yield from outside(self.probes, corner, self.size)
         shape = counts(self.size, self.cell)
         cells = shape[0] * shape[1] * shape[2]
         if cells > MOST_CELLS:

@@ -307,7 +307,7 @@ class Tie(Interaction):
         "`world`."
     )
     breaks: Annotated[float, Quantity(FORCE)] | None = field(
-        "Force above which it is gone, at the end of a step; by default it never is.", None, above=0
+        "Force above which it is gone, at the end of a step of at most 1/240 s; by default never.", None, above=0
     )
 
     def problems(self) -> Iterable[Problem]:

@@ -14,6 +14,7 @@ from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 from sceneql.quantities.instead import instead
 from sceneql.quantities.latex import from_latex
 from sceneql.quantities.operations import FUNCTIONS
+from sceneql.quantities.spaced import VECTORS, written_out
 from sceneql.quantities.span import Source, Span
 
 _MOST_SCANNED: Final = 20_000
@@ -121,8 +122,10 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
             written = source.text[fault.caret : fault.end]
             if calls_another(written):
                 continue  # it is reported where the value is read
-            if _LOOP.search(source.line(source.position(fault.caret)[0])) is not None:
-                help = f"values have no loops; of parts {instead('entry', 'for')}"
+            if _LOOP.search(line := source.line(source.position(fault.caret)[0])) is not None:
+                help = (
+                    written_out(line.partition(": ")[2]) or f"values have no loops; of parts {instead('entry', 'for')}"
+                )
                 found.error("syntax", "'for' cannot stand in a value", Span(source, fault.caret, fault.end), help=help)
                 continue
             if (named := _NAMED.fullmatch(written)) is not None:
@@ -132,7 +135,10 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
                 )
                 continue
             if (index := _INDEXED.fullmatch(written)) is not None:
-                help = f"write `item({index[1]}, {index[2]})`, in quotes; of a vector `{index[1]}.x` is the first"
+                axis = "xyz"[min(int(index[2][:2]), 2)]
+                help = f"write `item({index[1]}, {index[2]})`, in quotes; of a vector `{index[1]}.{axis}`"
+                if index[1].rpartition(".")[2] in VECTORS:
+                    help = f"write `{index[1]}.{axis}`"
                 text = "brackets behind a name mean nothing here"
                 found.error("syntax", text, Span(source, fault.caret, fault.end), help=help)
                 continue

@@ -13,6 +13,7 @@ import yaml
 from sceneql.language.broken_values import Fault, broken_halves, broken_near, report, swallowed
 from sceneql.language.encoded import MOST_BYTES, too_large
 from sceneql.language.lines import doubled, lacking, left_out, marked, no_script, twice, unparted
+from sceneql.language.merged import merged_as
 from sceneql.language.plain import cut_off, kind_of
 from sceneql.language.repair import blanked, cut_short, joined, repaired
 from sceneql.language.syntax import explain, place, unprintable
@@ -369,7 +370,7 @@ class _Composer:
         if broken(key):
             return key
         if key.text:
-            help = "use `defaults` for fields that many parts share, or `templates` for a part made several times"
+            help = merged_as(self.source.text, key.start)
             self.error("merge-key", "merge keys (<<) are not part of the language", key.span, help=help)
         else:
             self.error("key-not-text", "a key is missing before this colon", key.span, help="write `name: value`")

@@ -100,18 +100,14 @@ def read_repeat(
         if first.isdecimal() and first != "0":
             help += f", and `{counter} + {first}` for `{counter}` in its fields, for copies are numbered from 0"
         if isinstance(node, Sequence):
-            help = (
-                "all are one count: write `repeat: {count: 9, as: k}`, and `mod(k, 3)` and `floor(k/3)` in its fields"
-            )
+            help = f"all are one count: {_rows(node, None, 'repeat: ')}"
         if isinstance(node, Mapping) and node.entries.keys() & _APART:
             help += ", and say where each is: `position: [i*(0.5 m), 1 m, 0 m]`"
         found.error("repeat-shape", "`repeat` takes a count, and a name for the number", node.span, help=help)
         return None
     index = node.entries.get("as")
     if index is not None and not (isinstance(index, Scalar) and index.text.isidentifier()):
-        rows = (
-            "rows and columns are one count: write `{count: 9, as: i}`, and `mod(i, 3)` and `floor(i/3)` in its fields"
-        )
+        rows = f"rows and columns are one count: {_rows(node.entries['count'], index)}"
         help = rows if isinstance(index, Sequence) else "write `as: i`"
         found.error("repeat-shape", "`as` takes a name", index.span, help=help)
         return None
@@ -119,6 +115,19 @@ def read_repeat(
     if count is None:
         return None
     return Repeat(count, "i", node) if index is None else Repeat(count, index.text, index)
+
+
+def _rows(counts: Node, names: Node | None, before: str = "") -> str:
+    """What is written for copies in rows and columns, with the counts and the names of their numbers that are given."""
+    given = [one.text for one in counts.items if isinstance(one, Scalar)] if isinstance(counts, Sequence) else []
+    sides = [int(one) for one in given if one.isdecimal()]
+    sides = sides if len(sides) == 2 else [3, 3]
+    both = [one.text for one in names.items if isinstance(one, Scalar)] if isinstance(names, Sequence) else []
+    number = both[0] if len(both) == 2 else "k" if names is None else "i"
+    first, second = f"mod({number}, {sides[0]})", f"floor({number}/{sides[0]})"
+    of = [f" for `{one}`" for one in both] if len(both) == 2 else ["", ""]
+    told = f"`{first}`{of[0]} and `{second}`{of[1]} in its fields"
+    return f"write `{before}{{count: {sides[0] * sides[1]}, as: {number}}}`, and {told}"
 
 
 class _LostError(Exception):

@@ -100,7 +100,7 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
         return _in_flow(source, at, since if source.text[since : since + 1] in ("[", "{") else flow)
     character = source.text[at : at + 1]
     if (tab := _tab(source, at)) is not None:
-        return _syntax("a tab cannot indent a line", source, tab, "use spaces: two for each level")
+        return _syntax("a tab cannot indent a line", source, tab, _spaces(source, tab))
     if character in ("}", "]"):
         return _syntax(f"this `{character}` closes nothing", source, at, "leave it out")
     if "cannot start any token" in problem:
@@ -211,6 +211,17 @@ def _tab(source: Source, at: int) -> int | None:
             if "\t" in blank:
                 return source.line_starts[number - 1] + blank.index("\t")
     return None
+
+
+def _spaces(source: Source, tab: int) -> str:
+    """The help for a tab in an indentation: as many spaces as the line above tells."""
+    above = [line for line in source.text[:tab].split("\n")[:-1] if line.strip() and not line.lstrip().startswith("#")]
+    if not above or "\t" in above[-1]:
+        return "use spaces: two for each level"
+    own = len(above[-1]) - len(above[-1].lstrip())
+    inside = above[-1].rstrip().endswith(":")
+    why = "two more than the line above" if inside else "as many as the line above"
+    return f"use spaces: write {own + 2 * inside} of them before this line, {why} has"
 
 
 def _syntax(message: str, source: Source, at: int, help: str, *notes: Note) -> Diagnostic:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from collections.abc import Mapping as Table
 from collections.abc import Sequence as List
 from contextlib import suppress
@@ -23,10 +23,20 @@ __all__ = ["Entry", "Expanded", "Given", "Scope", "expand", "filled"]
 MOST_NESTED: Final = 64
 MOST_PARTS: Final = 100_000
 _CALLED = re.compile(r"(\w+)\(([^()]*)\)")
+_INSTANCE, _FIELD = re.compile(r"(\w+)\((.*)\)", re.DOTALL), re.compile(r"(\w+)\s*=\s*(?!=)")
 _ENDING = re.compile(r"(?<=\w)\.(mp4|mov|avi|gif|webm|png|jpe?g|csv|npz)$")
 """How files are called, whose ending the word of an output tells."""
 _EQUALS = re.compile(r"(\w+)\s*:?=\s*(\S+(?:[ \t]\S+)*)")
 """A value given as in other languages, ``k = 10 N/m``, alone on its line."""
+
+
+def _instance(word: str, known: Collection[str]) -> str | None:
+    """The help for a template that is called as a function of other languages, ``tree(at=[0, 0, 0], tall=1 m)``."""
+    call = _INSTANCE.fullmatch(word.strip())
+    if call is None or call[1] not in known:
+        return None
+    fields = _FIELD.sub(r"\1: ", call[2])
+    return f"write `{{{call[1]}: {{{fields}}}}}`" if fields != call[2] else f"write `{call[1]}`" if not fields else None
 
 
 def expand(root: Mapping, families: List[str], lost: Broken, found: Diagnostics, *, repeats: bool = True) -> Expanded:
@@ -267,7 +277,11 @@ class _Expander:
             self.done.broken.add(place.front + name)
             if word.text in self.done.broken:
                 return
-            help = suggestion(word.text, self.templates) or "declare it under `templates:`"
+            help = (
+                _instance(word.text, self.templates)
+                or suggestion(word.text, self.templates)
+                or "declare it under `templates:`"
+            )
             self.found.error("unknown-template", f"there is no template '{word.text}'", word.span, help=help)
             return
         if word.text in place.templates:

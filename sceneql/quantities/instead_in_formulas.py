@@ -121,7 +121,7 @@ OF_FORMULAS = (
     (
         "unit",
         "fps frames frame",
-        "a number of frames has no unit: `clock: {fps: 30}`; in a formula write `time`, which is 1 s at frame 30",
+        "a number of frames has no unit: `clock: {fps: 30}`; in a formula it is `30 Hz*time`",
     ),
     (
         "unit name",
@@ -249,12 +249,6 @@ OF_NAMED = (
         "soft dots stand at points: write `{sprites: {at: <points|[0 0 0 m, 1 0 0 m]>}}`; a solid of balls that melt"
         " together is a `blobby`",
     ),
-    (
-        "objects",
-        "cone pyramid frustum",
-        "a cone is a cylinder that is tapered, `{taper: {of: {cylinder: {radius: <radius|0.5 m>, height: <height|2 m>,"
-        " position: <position|0 1 0 m>}}, factor: 0.1}}`",
-    ),
     ("collider", "ground", "what masses touch is the `floor`: write `between: [ball, floor]`"),
     (
         "overlays",
@@ -299,11 +293,6 @@ OF_NAMED = (
         "models",
         "balloon bubble skin cell_membrane",
         "write `{membrane: {of: <of|ball>, law: {tension: 1 N/m}}}`, a skin in a `flow`: `sceneql words membrane`",
-    ),
-    (
-        "models",
-        "popnet pop emitter particle_system particlesystem particle_emitter dust sparks sparkles snow rain fireworks",
-        "write `{particles: {emit: {rate: <rate|100 /s>, velocity: <velocity|0 3 0 m/s>, lifetime: <lifetime|2 s>}}}`",
     ),
     (
         "models",

@@ -347,12 +347,6 @@ OF_PARTS = (
     ),
     (
         "objects",
-        "ellipsoid egg spheroid",
-        "it is a ball of 1 m that a group stretches: write `{group: {children: [{sphere: {radius: 1 m}}], scale:"
-        " <radii#|1 0.5 1>, position: <position|0 1 0 m>}}`",
-    ),
-    (
-        "objects",
         "translate rotate scale transform move resize",
         "the object has fields for that, `{box: {size: 1 1 1 m, position: 1 0 0 m, rotation: {about: y, angle: 30 deg},"
         " color: red}}`; a `group` moves, turns and scales several",

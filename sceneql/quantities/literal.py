@@ -177,3 +177,12 @@ def comma_meant(text: str, at: int = 0) -> str:
 def _skip(text: str, at: int) -> int:
     found = _GAP.match(text, at)
     return at if found is None else found.end()
+
+
+def with_points(text: str, span: Span) -> str | None:
+    """A value with decimal commas as one with points, if it is one then; None for others."""
+    points = re.sub(r"(?<=\d),(?=\d)", ".", text)
+    try:
+        return points.strip() if points != text and whole_value(points, span) is not None else None
+    except ScriptError:
+        return None

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, of_library, suggestion
 from sceneql.quantities.expression import Call, Expr, Name, Number, Vector, children, each_once
-from sceneql.quantities.instead import instead
+from sceneql.quantities.instead import instead, rewritten
 from sceneql.quantities.latex import from_latex
 from sceneql.quantities.literal import (
     NUMBER,
@@ -18,6 +18,7 @@ from sceneql.quantities.literal import (
     read_unit,
     vector_meant,
     whole_value,
+    with_points,
 )
 from sceneql.quantities.operations import FUNCTIONS, MANY, OPERATIONS
 from sceneql.quantities.spaced import (
@@ -34,6 +35,7 @@ from sceneql.quantities.spaced import (
     typed_plainly,
     vector_called,
     without_dots,
+    written_out,
 )
 from sceneql.quantities.span import Span
 from sceneql.quantities.temperatures import Temperatures
@@ -80,15 +82,6 @@ def parse_value(text: str, span: Span) -> Expr:
             raise
         help = f"a vector with formulas stands in brackets: write `{vector}`"
         raise ScriptError([Diagnostic("syntax", "two values stand side by side", found.span, help)]) from None
-
-
-def with_points(text: str, span: Span) -> str | None:
-    """A value with decimal commas as one with points, if it is one then; None for others."""
-    points = re.sub(r"(?<=\d),(?=\d)", ".", text)
-    try:
-        return points.strip() if points != text and whole_value(points, span) is not None else None
-    except ScriptError:
-        return None
 
 
 def _crossed(text: str) -> str | None:
@@ -219,9 +212,11 @@ class _Parser:
         self._advance()
         args = self._items(")", opening)
         if name not in FUNCTIONS:
-            hint = instead("function", name) or instead("function", of_library(name)) or suggestion(name, FUNCTIONS)
-            if (vector := vector_called(self.text)) is not None:
-                hint = f"write `{vector}`"
+            vector = vector_called(self.text)
+            hint = f"write `{vector}`" if vector else instead("function", name) or instead("function", of_library(name))
+            hint = hint or suggestion(name, FUNCTIONS)
+            if (anew := self._rewritten(name, args, opening)) is not None:
+                raise self._fail("unknown-function", f"there is no function '{name}'", start, self.previous, help=anew)
             every = "`sceneql words functions` lists all"
             help = every if hint is None else f"{hint}{' ' if hint.endswith('?') else '; '}{every}"
             raise self._fail("unknown-function", f"there is no function '{name}'", start, start + len(name), help=help)
@@ -230,8 +225,15 @@ class _Parser:
             low, high = operation.least, operation.most
             wanted = f"{low}" if low == high else f"{low} or more" if high == MANY else f"{low} to {high}"
             message = f"{name} takes {wanted} argument{'' if wanted == '1' else 's'}, not {len(args)}"
-            raise self._fail("wrong-arity", message, start, self.previous, help=instead("function", name))
+            better = self._rewritten(name, args, opening) or instead("function", name)
+            raise self._fail("wrong-arity", message, start, self.previous, help=better)
         return Call(name, args, span=self._from(start))
+
+    def _rewritten(self, name: str, args: tuple[Expr, ...], opening: int) -> str | None:
+        """The help for a function of another language, whose bracket opens there."""
+        texts, inside = [arg.span.text if arg.span else "" for arg in args], self.text[opening : self.previous]
+        anew = rewritten(name, texts) if all(text in inside for text in texts) else None
+        return f"write `{anew}`" if anew else None
 
     def _items(self, closing: str, opening: int) -> tuple[Expr, ...]:
         items: list[Expr] = []
@@ -319,7 +321,7 @@ class _Parser:
             plain = typed_plainly(self.text) if odd in _WRITTEN else None
             help = instead("sign", odd) if plain is None else f"write `{plain}`"
             return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
-        if (sides := _crossed(self.text)) is not None:
+        if (sides := _crossed(self.text) or (written_out(self.text) if self.token == "for" else None)) is not None:
             help = sides
         elif (vector := vector_called(self.text) or per_unit(self.text) or ternary(self.text)) is not None:
             help = f"write `{vector}`"

@@ -21,6 +21,8 @@ _JOINS = tuple("+*/^<>=,")
 _INDEX = re.compile(r"\[\s*(\d+)\s*\](?!\.)")
 _COPY = re.compile(r"\[\s*([^\[\]{}\"']+?)\s*\](\.[\w.]+)?")
 AXES = "xyz"
+VECTORS = ("position", "velocity", "acceleration", "spin", "force", "torque", "momentum", "center")
+"""Outputs that are vectors of three."""
 _CALLED = re.compile(
     r"(?:new\s+)?(?:\w+\.)*\w*?(?:vec|vector|point|array|float3|tuple)\w*\(\s*[\[(]?([^()\[\],]+(?:,[^()\[\],]+){1,2})[\])]?\s*\)",
     re.IGNORECASE,
@@ -51,6 +53,10 @@ LONGEST = 500
 """Longest text in which habits of other programs are looked for."""
 SIZE = 3
 """Components of the vectors that are recognised."""
+_LOOPED = re.compile(r"\[(.+)\s+for\s+(\w+)\s+in\s+(?:np\.|numpy\.)?(?:range|arange)\(\s*([-\d,\s]+)\)\s*\]")
+NONE = "values have no loops"
+MOST_ITEMS, LONGEST_LIST = 16, 480
+"""Largest number of items that a message writes out, and of their characters."""
 
 
 def bracketed(text: str, span: Span) -> str | None:
@@ -176,6 +182,19 @@ def by_frame(text: str, name: str, script: str) -> str | None:
     return f"a frame's number goes by the time: write `{re.sub(rf'[$]{name}(?![A-Za-z0-9_])', whole, text.strip())}`"
 
 
+def at_rate(help: str | None, script: str) -> str | None:
+    """A help that tells frames by the usual rate, with the rate of the script's clock."""
+    rate = _RATE.search(script)
+    if help is None or rate is None or float(rate[1]) <= 0:
+        return help
+    fps = rate[1]
+    help = help.replace(f"`{USUAL} Hz*time`, where {USUAL} is the `fps` of the clock", f"`{fps} Hz*time`")
+    help = help.replace(
+        f"12 of {USUAL} a second is at `0.4 s`", f"12 of {fps} a second is at `{12 / float(fps):.4g} s`"
+    )
+    return help.replace(f"{USUAL} Hz*time", f"{fps} Hz*time").replace(f"fps: {USUAL}}}", f"fps: {fps}}}")
+
+
 def less(text: str, other: str) -> str:
     """The difference of two formulas as a text: ``x^2 - 1``, ``x^2 - (y + 1)``."""
     text, other = text.strip(), other.strip()
@@ -277,6 +296,8 @@ def indexed(expr: Expr, before: str, text: str, at: int) -> str | None:
         return None
     if (index := _INDEX.match(text, at)) is not None:
         whole = f"item({before}, {index[1]})"
+        if before.rpartition(".")[2] in VECTORS and int(index[1]) < len(AXES):
+            return f"write `{before}.{AXES[int(index[1])]}`"
         if int(index[1]) >= len(AXES) or before.endswith("s"):  # positions, radii of a list
             return f"write `{whole}`"
         return f"write `{before}.{AXES[int(index[1])]}`, or of a list `{whole}`"
@@ -294,3 +315,34 @@ def indexed(expr: Expr, before: str, text: str, at: int) -> str | None:
         return f"an item of a list is `item({before}, {number})`; {of_copies}"
     inner = f"({before}, {number})"
     return f"of a list of numbers it is `component{inner}`, of vectors `item{inner}`; {of_copies}"
+
+
+def _components(text: str) -> list[str]:
+    """The pieces of a text between commas outside of brackets."""
+    pieces, depth = [""], 0
+    for character in text:
+        depth += (character in "([") - (character in ")]")
+        pieces, rest = ([*pieces, ""], "") if character == "," and depth == 0 else (pieces, character)
+        pieces[-1] += rest
+    return pieces
+
+
+def written_out(text: str) -> str | None:
+    """The help for ``[2*i for i in range(3)]``: its items one by one, or how many there are; None of other texts."""
+    found = _LOOPED.search(text) if len(text) <= 1000 else None
+    numbers = [] if found is None else [int(one) for one in found[3].split(",") if one.strip().lstrip("-").isdecimal()]
+    if found is None or not 1 <= len(numbers) <= 3 or (len(numbers) == 3 and numbers[2] == 0):
+        return None
+    counted = range(*numbers)
+    place = found[1].strip()
+    if place.startswith("[") and place.endswith("]") and len(numbers) == 1:
+        point = ", ".join(f'"{one.strip()}"' if "(" in one else one.strip() for one in _components(place[1:-1]))
+        whole = f"[{{repeat: {{count: {numbers[0]}, as: {found[2]}}}, point: [{point}]}}]"
+        return f"{NONE}: places that are computed stand in a list as `{whole}`"
+    items = [re.sub(rf"(?<![\w.]){found[2]}\b", str(k), found[1].strip()) for k in counted[:MOST_ITEMS]]
+    whole = f"[{', '.join(items)}]"
+    if len(counted) <= MOST_ITEMS and len(whole) <= LONGEST_LIST:
+        return f'{NONE}: write its items one by one, `"{whole}"`'
+    shown = f"`{items[0]}`, `{items[1]}`, ..." if len(items) > 1 else f"`{whole}`"
+    parts = f"of parts made by `repeat: {{count: {len(counted)}, as: {found[2]}}}` each has its own formula"
+    return f"{NONE}: write all {len(counted)} items one by one, {shown}; {parts}: `sceneql words repeat`"

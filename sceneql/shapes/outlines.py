@@ -116,8 +116,8 @@ def _farthest(points: Floats, reach: Floats | float) -> NDArray[intp]:
     best, far = np.zeros(COUNT, dtype=np.intp), np.full(COUNT, -np.inf)
     for start in range(0, len(points), AT_ONCE):
         some = slice(start, start + AT_ONCE)
-        along = points[some] @ DIRECTIONS.T + (reach if isinstance(reach, float) else reach[some])
-        last = np.argmax(along, axis=0)
-        there = along[last, np.arange(COUNT)]
+        along = DIRECTIONS @ points[some].T + (reach if isinstance(reach, float) else reach[some, 0])
+        last = np.argmax(along, axis=1)
+        there = along[np.arange(COUNT), last]
         best, far = np.where(there > far, start + last, best), np.maximum(there, far)
     return best

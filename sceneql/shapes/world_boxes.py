@@ -53,7 +53,7 @@ def surface_box(shape: Shape) -> tuple[Floats, Floats]:
 
 
 def inside_samples(shape: Shape) -> tuple[Floats, Floats] | None:
-    """Lattice points (n, 3) [m] inside an implicit solid, and the lattice's steps (3,) [m].
+    """Lattice points (n, 3) [m] inside an implicit solid, among them all outermost, and the lattice's steps (3,) [m].
 
     A second, finer lattice is used where the points fill less than half of a side. None for other shapes, infinite
     boxes, skeletons of more than MOST_PARTS parts, and where no point lies inside.
@@ -71,13 +71,18 @@ def inside_samples(shape: Shape) -> tuple[Floats, Floats] | None:
 
 
 def _sampled(shape: Implicit, low: Floats, high: Floats) -> tuple[Floats, Floats]:
-    """Points (n, 3) inside the solid of a lattice that fills a box, and the lattice's steps (3,) [m]."""
+    """Points (n, 3) inside the solid of a lattice that fills a box, and the lattice's steps (3,) [m].
+
+    Points between two others of their row along x are left out: none of these is outermost.
+    """
     from sceneql.field.tape.tape_solid import field_values
 
     step = (high - low) / FINE
     axes = [low[k] + step[k] * np.arange(FINE + 1) for k in range(3)]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    return points[field_values(shape.tape, points) < 0], step
+    inside = (field_values(shape.tape, points) < 0).reshape(FINE + 1, -1)
+    inside[1:-1] &= ~(inside[:-2] & inside[2:])
+    return points[inside.ravel()], step
 
 
 def _around(points: Floats, radii: Floats | float) -> tuple[Floats, Floats]:

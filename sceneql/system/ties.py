@@ -39,7 +39,9 @@ class TieRow:
     u_a, w_b; `ball`: x_a + r_a = x_b + r_b with vectors r_a, r_b, in three rows, of which two are `written` with the
     first; `distance`: |x_a + r_a - x_b - r_b| = constant with vectors r_a, r_b; `gear`: the rotation angles of both
     about axes of the world, times the constants, sum to full turns; the vectors are, for each mover, the axis, a
-    direction across it at the start, and that direction in its own axes. r are relative to the movers' positions [m].
+    direction across it at the start, and that direction in its own axes, then the axles r_a, r_b and the line from the
+    one to the other at the start, against which both turn, with its length as the third constant (0: they turn against
+    the world). r are relative to the movers' positions [m].
     """
 
     kind: Literal["point", "angle", "distance", "gear", "ball", "written"]

@@ -115,11 +115,8 @@ class Body(Record):
         if self.of is not None:
             kind: Any = assembly.object(self.of)
             position, rotation = getattr(kind, "position", None), getattr(kind, "rotation", None)
-            if not (isinstance(position, Value) and isinstance(rotation, Value)):
-                word = type(kind).__module__.rpartition(".")[2]
-                message = f"'{self.of.name}' is a {word}, which has no position and rotation that a body could drive"
-                help = f"put it into a group, `{{group: {{children: [{self.of.name}]}}}}`, and name that"
-                raise ScriptError([Diagnostic("no-position", message, self.of.span, help)])
+            assert isinstance(position, Value)  # the compiler has put what has none into a group
+            assert isinstance(rotation, Value)
             place, turn = (np.asarray(assembly.initial(value), dtype=np.float64) for value in (position, rotation))
             if self.inertia is None or self.center is None:
                 found = self._uniform(self.of, kind, assembly)
@@ -152,5 +149,7 @@ class Body(Record):
         try:
             return properties(kind, start)
         except (TypeError, ValueError) as error:
-            message = f"'{ref.name}' cannot be a rigid body: {error}"
+            written = ref.span.text if ref.span is not None else ""
+            name = written if ref.name.startswith(f"{written}.") else ref.name  # of a copy, or a group of it
+            message = f"'{name}' cannot be a rigid body: {error}"
             raise ScriptError([Diagnostic("no-body", message, ref.span)]) from None

@@ -80,6 +80,7 @@ class Joint(Tie):
 
         from sceneql.bodies.rigid.tie_rows_kernels import ROW
         from sceneql.bodies.rigid.tie_system import integers
+        from sceneql.bodies.rigid.tied_step import OFTEN
 
         first, second = sides_of(self.between, assembly)
         if first.mover == second.mover:
@@ -94,6 +95,7 @@ class Joint(Tie):
         if self.breaks is not None:
             ints = (scratch, len(rows), holds, assembly.floats([self.breaks]), *motion)
             assembly.after_step("sceneql.bodies.rigid.break_kernels:part", ints)
+            assembly.step_at_most(OFTEN)  # what rests under a growing load would be taken over its break in one step
 
     def assemble_motion(
         self, first: Side, second: Side, holds: int, assembly: Assembly

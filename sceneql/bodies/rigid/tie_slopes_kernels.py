@@ -31,7 +31,9 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_W,
     DISTANCE,
     FIRST,
+    GEAR,
     KIND,
+    LENGTH,
     MOMENTUM,
     MOVED,
     MOVER,
@@ -63,7 +65,7 @@ ENTRIES = DIAGONAL + 1
 TURN = 1e-5
 """Change of a quaternion, as a part of its length: differences are exact to its square."""
 PART = 1e-5
-"""Change of a position, as a part of the length of a rod; other rows are linear in it."""
+"""Change of a position, as a part of the length of a rod or a line of axles; other rows are linear in it."""
 
 
 @lean_inlined
@@ -150,6 +152,8 @@ def hold(t, y, entries, floats, ints):
                 break
             if ints[other + KIND] == DISTANCE:
                 rod = min(rod, floats[ints[other + NUMBERS] + 6])
+            if ints[other + KIND] == GEAR and floats[ints[other + NUMBERS] + LENGTH] > 0.0:
+                rod = min(rod, floats[ints[other + NUMBERS] + LENGTH])
             end += 1
         one, two = ints[MOVED_AT] + MOVED * ints[row + FIRST], ints[MOVED_AT] + MOVED * ints[row + SECOND]
         for k in range(begin, end):

@@ -18,6 +18,7 @@ from sceneql import kinds
 from sceneql.compiler.annotations import marks_of, quantities
 from sceneql.compiler.meant import quantity_help as helped
 from sceneql.compiler.meant.by_size import by_own_size
+from sceneql.compiler.meant.listed_states import listed_states
 from sceneql.compiler.meant.values_elsewhere import along_default, elsewhere, first_of, middle_of_ends
 from sceneql.compiler.names import Names
 from sceneql.compiler.problems import Unreadable
@@ -83,6 +84,9 @@ def better_alone(
     if len(found) == before:
         return
     told = [(one.code, one.help) for one in found[before:]]
+    if (states := listed_states(reader, written, name)) is not None:
+        found[before:] = [replace(found[before], help=states)]
+        return
     known = [kinds.written_name(key) for key in cls.model_fields]
     varies = "variation" in known and name in (field_of(cls, "variation").description or "")
     if varies and (varied := middle_of_ends(name, node, known)) is not None:

@@ -25,6 +25,7 @@ from sceneql.compiler.meant.chained import mended
 from sceneql.compiler.meant.other_parts import for_each_mass, of_contact
 from sceneql.compiler.meant.own_examples import own_example
 from sceneql.compiler.meant.own_values import in_si, with_own
+from sceneql.compiler.meant.painted import colored
 from sceneql.compiler.meant.quantity_help import NAME, TRUE, other_output
 from sceneql.compiler.meant.together import together
 from sceneql.compiler.meant.unknown import meant_field
@@ -220,7 +221,7 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         return f"write {told}" if 1 <= len(found) <= 2 else None
     if issubclass(cls, kinds.Record) and (meant := cls.meant_by(node.text)) is not None:
         return meant
-    if (side := part_at_side(reader, node, cls)) is not None:
+    if (side := colored(reader, node, cls) or part_at_side(reader, node, cls)) is not None:
         return side
     if node.text.lower() in TRUE and not required:
         return "write `{}`: all of its fields have defaults"

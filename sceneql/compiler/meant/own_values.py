@@ -32,6 +32,8 @@ def with_own(help: str, name: str, text: str, *, beside: bool = False) -> str:
     same; likewise the value of a field ``beside`` the one that the help is for.
     """
     own = _type(text)
+    if HALF in help and not beside and re.fullmatch(_NUMBER, text.strip()):
+        return _HALF_OF.sub(rf"\1 `\2: {float(text) / 2:.6g}`", help)
     if HALF in help and own != ((), LENGTH, LENGTH.kind) and not beside:  # of another example's number it is not half
         return _HALF_OF.sub(r"\1 `\2`", help)
     if own is None or (name in UNSURE and HALF not in help):

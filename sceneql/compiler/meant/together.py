@@ -8,6 +8,7 @@ from collections.abc import Sequence as Sequenced
 
 from sceneql.compiler.meant.own_values import in_si, numbers_with_unit
 from sceneql.compiler.meant.worked_out import worked_out
+from sceneql.language.one_line import one_line
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import same_as
 from sceneql.quantities.literal import vector_meant
@@ -46,6 +47,8 @@ FIRST, LAST = (
     ("frame_end", "end_frame", "last_frame", "frames", "nframes"),
 )
 """Fields of other programs for the numbers of a film's first and last frame."""
+SHOWN = 160
+"""Longest value that a message repeats."""
 USUAL = 30.0
 """Frames a second of a clock that says nothing else."""
 
@@ -58,6 +61,7 @@ def together(name: str, unknown: Sequenced[str], node: Mapping, known: Collectio
     told = told or _along(name, unknown, node, known) or _shown(name, unknown, node, known)
     told = told or _typed(name, unknown, node, known) or worked_out(name, unknown, node, known)
     told = told or _of_keys(name, node) or _drag(name, unknown, node, known) or _two_places(name, node, known)
+    told = told or _panels(name, unknown, node, known)
     if told is not None:
         return told
     ours = same_as(name, known)
@@ -264,12 +268,28 @@ def _two_places(name: str, node: Mapping, known: Collection[str]) -> str | None:
     return f"write `from: {first}, to: {second}`"
 
 
+def _panels(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for panels and the numbers of rows and columns of a layout, which is a list of rows."""
+    lists = [one for key, one in node.entries.items() if isinstance(one, Sequence) and key in unknown]
+    if not {"each", "share"} <= {*known} or len(lists) != 1:
+        return None
+    names = [one.span.text for one in lists[0].items]
+    counts = {key.lower(): one.span.text for key, one in node.entries.items()}
+    columns = next((counts[one] for one in ("columns", "cols", "ncols") if counts.get(one, "").isdecimal()), "")
+    rows = next((counts[one] for one in ("rows", "nrows") if counts.get(one, "").isdecimal()), "")
+    width = int(columns) if columns else -(-len(names) // max(int(rows), 1)) if rows else len(names)
+    told = ", ".join(f"[{', '.join(names[k : k + width])}]" for k in range(0, len(names), max(width, 1)))
+    return f"a layout is a list of rows of names: write `layout: [{told}]`"
+
+
 def _of_keys(name: str, node: Mapping) -> str | None:
     """The help for a field of keyframes that stands beside them."""
     keyed = next((key for key, one in node.entries.items() if isinstance(one, Mapping) and "keys" in one.entries), None)
     if name not in KEYED or keyed is None:
         return None
-    told = f"{keyed}: {{keys: {{...}}, {name}: {node.entries[name].span.text}}}"
+    whole = one_line(node.entries[keyed]).removesuffix("}")
+    whole = whole if len(whole) <= SHOWN else "{keys: {...}"
+    told = f"{keyed}: {whole}, {name}: {node.entries[name].span.text}}}"
     return f"it stands beside `keys`, in the same braces: write `{told}`"
 
 

@@ -10,6 +10,7 @@ from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.compiler.annotations import first_field
+from sceneql.language.one_line import one_line
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import same_as
@@ -17,6 +18,8 @@ from sceneql.quantities.instead import instead
 
 EQUATION = re.compile(r"(?:d\(?(\w+)\)?/dt|(\w+'')|(\w+)'|(\w+)_dot)\s*=\s*(.+)")
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
+SEVERAL, SHOWN = 2, 200
+"""Least number of fields that tell that a name is missing, and the longest text that a message repeats."""
 NAMES = ("name", "id")
 """Fields by which other programs name the items of a list."""
 
@@ -90,6 +93,29 @@ def by_name(node: Node, item: Any, parts: bool) -> str:
     if record and "of" in item.model_fields and first != "name":
         example = f"{{of: {first}}}"
     return f"write `{{{first}: {example}}}`, each entry under a name of its own"
+
+
+def nameless(node: MappingNode, item: Any, what: str) -> str | None:
+    """The help for the fields of one record where records stand by names: ``expect: {of: ..., value: 1}``."""
+    if not (isinstance(item, type) and issubclass(item, BaseModel)):
+        return None
+    known = [kinds.written_name(name) for name in item.model_fields]
+    inner = [one for one in node.entries.values() if isinstance(one, MappingNode)]
+    if len(node.entries) < SEVERAL or not {*node.entries} <= {*known}:
+        return None
+    if any(key in known for one in inner for key in one.entries):
+        return None
+    text = one_line(node)
+    return f"write `{what}: {{first: {text if len(text) <= SHOWN else '{...}'}}}`, under any name"
+
+
+def text_meant(node: Node, what: str) -> str | None:
+    """The help for a list or a group of fields in place of a text."""
+    if isinstance(node, Sequence) and what == "pins":
+        return "a pin is a side or a corner, or the number of a mass: write `pins: [top_left, top_right]`"
+    return (
+        f'write `{what}: "{node.span.text}"`' if isinstance(node, MappingNode) and "\n" not in node.span.text else None
+    )
 
 
 def equated(texts: Collection[str]) -> str | None:

@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.meant.grouped import Renamed, ends, flat, numbered_alike, of_inner
+from sceneql.compiler.meant.other_shapes import other_word
 from sceneql.compiler.meant.own_values import with_own
 from sceneql.compiler.meant.together import filled, together
 from sceneql.compiler.meant.unwrapped import unwrapped
@@ -78,6 +79,7 @@ def report_unknown(
         unknown = [name for name in unknown if name.rpartition(".")[0] != field]
     for name in unknown:
         help = together(name, unknown, node, known)
+        final = help is not None  # what it says is of these values already
         help = (
             help or (said_by or {}).get(name) or whole(name, node) or instead(f"field.{title.partition('.')[0]}", name)
         )
@@ -112,7 +114,7 @@ def report_unknown(
         if help is None and table and table not in node.entries:
             inner = ", ".join(f"{one}: {node.entries[one].span.text}" for one in unknown)
             help = f"names of your own stand in `{table}`: write `{table}: {{{inner}}}`"
-        for one in (name, *unknown) if help else ():
+        for one in (name, *unknown) if help and not final else ():
             help = with_own(help or "", one, node.entries[one].span.text, beside=one != name)
         told.setdefault(help or f"it has {', '.join(known)}{len(told) * WITHOUT}", []).append(name)
     for help, names in told.items():
@@ -181,6 +183,8 @@ def word_meant(
         return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.span.text}}}`"
     if isinstance(fields, Scalar) and entry.name == entry.word and catalogue.load(family, fields.text) is not None:
         return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.text}}}`"
+    if (other := other_word(entry.word, family, fields)) is not None:
+        return other
     if fields is None and family_of.get(entry.word, family) != family:
         pairs = having_fields(["between"], family, catalogue)
         word = DEFAULT.get(family) if DEFAULT.get(family) in pairs else next(iter(pairs), None)
@@ -265,8 +269,10 @@ def _fields_of(entry: Entry, cls: type[BaseModel]) -> str:
         value = None
     if not isinstance(value, Number | Vector) or value.type.dimension is None:
         return "..."
+    first = value.items[0] if isinstance(value, Vector) else value
+    shape = (len(value.items),) if isinstance(value, Vector) else ()
     for name, info in cls.model_fields.items():
-        if any((one.dimension, one.shape) == (value.type.dimension, value.type.shape) for one in quantities(info)):
+        if any((one.dimension, one.shape) == (first.type.dimension, shape) for one in quantities(info)):
             extra: Any = info.json_schema_extra or {}
             above = isinstance(value, Number) and {"above", "at_least"} & extra.get("limits", {}).keys()
             return f"{{{written_name(name)}: {entry.word.lstrip('-+ ') if above else entry.word}}}"

@@ -6,6 +6,7 @@ from collections.abc import Collection
 from collections.abc import Sequence as Sequenced
 from math import atan, degrees, tau
 
+from sceneql.compiler.meant.other_shapes import prism
 from sceneql.compiler.meant.own_values import in_si, numbers_with_unit
 from sceneql.language.tree import Mapping, Sequence
 
@@ -32,6 +33,20 @@ WAYS, SIZES = ("direction", "dir", "axis"), ("length", "magnitude", "size", "len
 """Fields of other programs for an arrow's direction and length."""
 WHIRLS = ("speed", "velocity", "rate", "strength", "angular_velocity", "omega")
 """Fields of other programs for how fast a vortex turns."""
+FACETS = ("$fn", "sides", "segments", "radialsegments", "radial_segments", "vertices")
+"""Fields of other programs for how many sides a cylinder has."""
+FED = ("feed", "kill", "f", "k", "feed_rate", "kill_rate", "du", "dv")
+"""Fields of other programs for the equations of Gray and Scott."""
+MODULI = {
+    "mu": ("mu", "g", "shear", "shear_modulus", "shearmodulus"),
+    "lambda": ("lambda", "lam", "lame", "first_lame", "lambda_"),
+    "bulk": ("k", "bulk", "bulk_modulus", "bulkmodulus", "kappa"),
+    "nu": ("nu", "poisson", "poisson_ratio", "v"),
+}
+"""Fields of other programs for elastic constants."""
+HALF = 0.5
+GRAY_SCOTT = (("feed", "f", "feed_rate"), "0.03"), (("kill", "k", "kill_rate"), "0.06")
+PRESSURES = ((1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"))
 LASTING = ("duration", "time", "seconds", "period")
 """Fields of other programs for how long a motion takes."""
 GRAVITATION = 6.6743e-11
@@ -44,6 +59,11 @@ def worked_out(name: str, unknown: Sequenced[str], node: Mapping, known: Collect
     """The help for an unknown field whose value here follows from what is written."""
     told = _lens(name, node, known) or _cone(name, unknown, node, known) or _arrow(name, unknown, node, known)
     told = told or _balls(name, node, known) or _pointing(name, unknown, node, known) or _colors(name, node, known)
+    if told is None and name in FACETS and {"radius", "height"} <= {*known}:
+        told = prism(node.entries, name)
+    if told is None and name.lower() in FED and "species" in known and "species" not in node.entries:
+        told = _fed(node)
+    told = told or _moduli(name, unknown, node, known)
     told = told or _whirling(name, node, known) or _beside(name, node, known)
     return told or _progress(name, node, known) or _followed(name, node, known) or _pulling(name, node, known)
 
@@ -162,6 +182,42 @@ def _whirling(name: str, node: Mapping, known: Collection[str]) -> str | None:
         return None
     told = f"`circulation: {tau * speed[0]:.3g} m^2/s`"
     return f"it falls off from the axis: {speed[0]:g} m/s at a distance of 1 m is {told}: write that"
+
+
+def _moduli(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for other pairs of elastic constants: of Lame, or the moduli of shear and of volume."""
+    if not {"modulus", "poisson"} <= {*known} or name not in unknown:
+        return None
+    given = {
+        ours: (in_si(node.entries[one].span.text) or [0.0])[0]
+        for ours, names in MODULI.items()
+        for one in node.entries
+        if one in names or one.lower() in names
+    }
+    mu, first, bulk, nu = (given.get(one, 0.0) for one in ("mu", "lambda", "bulk", "nu"))
+    if mu > 0 and (first > 0 or bulk > 0):
+        first = first or bulk - 2.0 * mu / 3.0
+        modulus, nu = mu * (3.0 * first + 2.0 * mu) / (first + mu), first / (2.0 * (first + mu))
+    elif mu > 0 and 0 < nu < HALF:
+        modulus = 2.0 * mu * (1.0 + nu)
+    elif bulk > 0 and 0 < nu < HALF:
+        modulus = 3.0 * bulk * (1.0 - 2.0 * nu)
+    else:
+        return None
+    scale, unit = next((one for one in PRESSURES if modulus >= one[0]), (1.0, "Pa"))
+    return f"write `modulus: {modulus / scale:.4g} {unit}, poisson: {nu:.4g}`"
+
+
+def _fed(node: Mapping) -> str:
+    """The help for the numbers of the equations of Gray and Scott, which are written out, with a spot in the middle."""
+    given = {one.lower(): value.span.text for one, value in node.entries.items()}
+    feed, kill = (next((given[one] for one in names if one in given), usual) for names, usual in GRAY_SCOTT)
+    size = in_si(given.get("size", "")) or [1.0, 1.0]
+    spot = " + ".join(f"({axis} - {side / 2:g})^2" for axis, side in zip("xyz", size, strict=False))
+    first = f"u: {{coefficient: {given.get('du', '2e-5')}, initial: 1, rate: -u*v^2 + {feed}*(1 - u)}}"
+    second = f"initial: 0.5*exp(-({spot})/{(0.1 * max(size)) ** 2:.3g}), rate: u*v^2 - ({feed} + {kill})*v"
+    told = f"species: {{{first}, v: {{coefficient: {given.get('dv', '1e-5')}, {second}}}}}"
+    return f"what is fed and dies stands in the rates: write `{told}`"
 
 
 def _progress(name: str, node: Mapping, known: Collection[str]) -> str | None:

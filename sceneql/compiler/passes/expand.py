@@ -64,7 +64,7 @@ def expand(
         not any(isinstance(t.kind, Solver) and t.kind.on is None for t in result.values())
     ):
         add("solver", "solvers", "auto")
-    driven = _drive(own_shapes(stand_ins(result)))
+    driven = _drive(own_shapes(stand_ins(result), catalogue))
     draws = any(isinstance(task.kind, Output) and task.kind.draws for task in driven.values())
     return _show(driven, catalogue) if draws else driven
 

@@ -178,7 +178,10 @@ def _touching(
         why = None if ref.name in driver else no_collider(tasks[ref.name], tasks)
         if why is not None:
             name = ref.name if ref.span is None else ref.span.text
-            help = instead("collider", name) or f"name under `between` what may touch, without '{name}'"
+            names = [one.name if one.span is None else one.span.text for one in task.kind.ties()]
+            told = ", ".join(dict.fromkeys("floor" if one == name else one for one in names))
+            help = instead("collider", name) and f"what masses touch is the `floor`: write `between: [{told}]`"
+            help = help or f"name under `between` what may touch, without '{name}'"
             found.error("no-collider", f"'{name}': {why}", ref.span, help=help)
         elif ref.name in models and not _collides(tasks[ref.name], task.kind):
             text = f"{task.word} acts on masses, and there are none in {ref.name}"

@@ -1,23 +1,45 @@
-"""Objects that are the shape of several bodies: each body but the first drives a copy."""
+"""Objects that bodies drive: each body but the first of a shape drives a copy, and what has no place a group of it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
+from typing import Any
 
+from sceneql.compiler.catalogue import Catalogue
 from sceneql.graph import Task
-from sceneql.kinds import Model, Ref
+from sceneql.kinds import Model, Object, Ref, Value
+from sceneql.quantities.diagnostic import Diagnostics
 
 
-def own_shapes(tasks: Mapping[str, Task]) -> dict[str, Task]:
-    """The parts, with a copy ``brick.1`` for the second body that has the shape ``brick``, and so on."""
+def own_shapes(tasks: Mapping[str, Task], catalogue: Catalogue) -> dict[str, Task]:
+    """The parts, with a copy ``brick.1`` for the second body that has the shape ``brick``, and so on.
+
+    A body whose shape has no position and rotation (a tube, a blobby solid) drives a group of it, ``blob.carrier``.
+    """
     result, taken = dict(tasks), set[str]()
     for task in tasks.values():
         if not isinstance(task.kind, Model):
             continue
         copies: list[str] = []
+        drives = task.kind.drives()
 
-        def own(ref: Ref, copies: list[str] = copies) -> Ref:
+        def own(ref: Ref, copies: list[str] = copies, drives: Mapping[str, Mapping[str, str]] = drives) -> Ref:
+            turns = "rotation" in drives[ref.name] and not _placed(tasks[ref.name], drives[ref.name])
+            single = _single(ref, copies)
+            return carried(single, copies) if turns else single
+
+        def carried(ref: Ref, copies: list[str]) -> Ref:
+            shape = result[ref.name]
+            assert isinstance(shape.kind, Object)
+            name = f"{ref.name}.carrier"
+            group: Any = catalogue.load("objects", "group")
+            kind = group(children=(ref,), hidden=shape.kind.hidden)
+            result[name] = Task(name, "group", kind, shape.span, (ref.name,))
+            copies.append(name)
+            return replace(ref, name=name)
+
+        def _single(ref: Ref, copies: list[str]) -> Ref:
             if ref.name not in taken:
                 taken.add(ref.name)
                 return ref
@@ -32,3 +54,21 @@ def own_shapes(tasks: Mapping[str, Task]) -> dict[str, Task]:
         if copies:
             result[task.name] = replace(task, kind=kind, needs=(*task.needs, *copies))
     return result
+
+
+def report_placeless(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Report objects that masses would drive and that have no position. ``tasks``: as written, without carriers."""
+    for task in tasks.values():
+        for name, fields in task.kind.drives().items() if isinstance(task.kind, Model) else ():
+            one, ref = tasks.get(name), getattr(task.kind, "of", None)
+            if one is None or "rotation" in fields or _placed(one, fields) or not isinstance(ref, Ref):
+                continue
+            text = f"'{name}' is a {one.word}, which has no position that a particle could drive"
+            mass = f", mass: {task.kind.mass:g} kg" if "mass" in task.kind.model_fields_set else ""  # type: ignore[attr-defined]
+            help = f"let it be a body, which moves as a whole and turns: write `{{rigid: {{of: {name}{mass}}}}}`"
+            found.error("no-position", text, ref.span, help=help)
+
+
+def _placed(task: Task, fields: Collection[str]) -> bool:
+    """Whether an object has the fields that a model drives."""
+    return all(isinstance(getattr(task.kind, field, None), Value) for field in fields)

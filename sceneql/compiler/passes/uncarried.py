@@ -44,7 +44,10 @@ def report_carried(
         skin = isinstance(task.kind, Model) and task.kind.carried
         if skin and not by and not found.errors:  # refused forces are missing in `by`
             text = f"no flow carries '{task.name}', and by itself it does not move"
-            help = f"write `forces: [{{immersion: {{on: [{task.name}], in: ...}}}}]` with the name of a flow"
+            flows = [one.name for one in tasks.values() if getattr(one.kind, "flows", False)]
+            more = "" if len(flows) == 1 else " with the name of a flow"
+            force = f"immersion: {{on: [{task.name}], in: {flows[0] if flows else '...'}}}"
+            help = f"write `forces: [{{{force}}}]`{more}"
             found.error("not-carried", text, task.span, help=help)
         if len(by) > 1:
             notes = [Note("the other is here", by[0].span)] if by[0].span else []

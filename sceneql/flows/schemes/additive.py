@@ -51,6 +51,7 @@ def stepper(tolerance: float, step: float | None, largest: float | None) -> Step
     method = Method(
         step="sceneql.flows.schemes.additive_kernels:step",
         order=3,
+        dense="sceneql.flows.schemes.additive_kernels:dense",
         numbers=(len(NODES),),
         settings=tableau,
         last_stage=0,
@@ -71,10 +72,10 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     tallies = {grid.at + int(np.prod(grid.cells.shape)) for grid in system.fields.grids}
     blocks = [(first, last - first - (last - 1 in tallies)) for first, last, *_ in system.ranges]
     (stages,) = stepper.method.numbers
-    tables_at = len(stepper.method.settings) + len(blocks) + 1
+    tables_at = len(stepper.method.settings) + len(blocks) + 2
     head = (stages, HEAD + OPERATOR * len(operators) + 2 * len(blocks), len(blocks), velocities, len(operators))
     return Prepared(
-        settings=np.array([*stepper.method.settings, *[0.0] * len(blocks), -np.inf, *tables.numbers]),
+        settings=np.array([*stepper.method.settings, *[0.0] * len(blocks), 0.0, -np.inf, *tables.numbers]),
         numbers=np.array([*head, tables_at, *np.ravel(operators), *np.ravel(blocks), *flow.ints], dtype=np.int64),
         work=(13 + 2 * stages) * len(system.y),
         text=text,
@@ -88,4 +89,6 @@ def growth(decay: float, turn: float, step: float) -> float:
     for e, d in zip(EXPLICIT, IMPLICIT, strict=True):
         known = sum((explicit * a + implicit * b) * y for a, b, y in zip(e, d, stages, strict=False))
         stages.append((1.0 + known) / (1.0 - implicit * d[len(stages)]))
-    return abs(1.0 + (implicit + explicit) * sum(b * y for b, y in zip(WEIGHTS, stages, strict=True)))
+    beyond = explicit * sum((b - e) * y for b, e, y in zip(WEIGHTS, EXPLICIT[-1], stages, strict=True))
+    fast = implicit * IMPLICIT[-1][-1] / (1.0 - implicit * IMPLICIT[-1][-1])
+    return abs(stages[-1] + (1.0 - fast * fast) * beyond)

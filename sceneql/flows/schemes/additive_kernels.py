@@ -5,10 +5,14 @@ Stage i solves Y_i - a P L Y_i = P (y0 + h sum over j < i of (e_ij N_j + d_ij L 
 multistep_kernels and P the projection. So the pressure keeps to each stage, and beside walls the order stays. The
 velocities are found by conjugate gradients among those free of divergence, with P (1 - a L)^-1 as preconditioner.
 
+The end of a step is the last stage Y_s, which has the weights b of the implicit rates, and h sum (b_j - e_sj) N_j. Of
+this second part, which no stage has solved for, what is fast is taken away (``quiet``).
+
 ``settings``: the tableau (e, d, b, b - b of the embedded method, nodes), the tolerance, then the size that each block
-of the state has had, the end of the latest step, and the tables. ``numbers``: [stages, where the flow's integers begin,
-number of blocks, operators of velocities, operators, where in the settings the tables begin], the operators, [offset in
-y, count] of each block, whose errors are measured together, the flow's integers.
+of the state has had, 1 where the latest step went on from the one before, its end, and the tables. ``numbers``:
+[stages, where the flow's integers begin, number of blocks, operators of velocities, operators, where in the settings
+the tables begin], the operators, [offset in y, count] of each block, whose errors are measured together, the flow's
+integers.
 """
 
 import math
@@ -20,7 +24,7 @@ from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.flows.layout import AT, CHANGE, FACES, INVERSES, LED, RATE, SKIP, VELOCITY, WORK
 from sceneql.flows.projection_kernels import project
 from sceneql.flows.schemes.operators_kernels import OPERATOR, same, solve, spread, tally
-from sceneql.system.signatures_kernels import STEP, A, F, I, N
+from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I, N
 
 STAGES, FLOW_AT, BLOCKS, AXES, OPERATORS, TABLES_AT, HEAD = range(7)
 EXACT, SHARE = 1e-10, 1e-3
@@ -97,6 +101,43 @@ def implicit(a, exact, wanted, y, room, more, floats, tables, numbers):
     return False
 
 
+@lean(types.boolean(F, F, A, A, A, A, A, A, I), inner=True)
+def quiet(a, exact, still, y, room, more, floats, tables, numbers):
+    """Take what is fast from y - still, of velocities, where y has more than ``still``, the last stage: in place.
+
+    By (1 - a L)^-1, and once more of what that took away, so that what is slow stays up to (a L)^2 and the order with
+    it. What is fast would be small, but the forces on walls are it times conductances without a bound, and so would be
+    the errors that are measured. Whether it was solved; y has a divergence then.
+    """
+    n, solved = y.size, True
+    scratch = floats[numbers[numbers[FLOW_AT] + WORK] :]
+    change, slow, rest, more_slow = more[:n], more[n : 2 * n], more[2 * n : 3 * n], more[3 * n : 4 * n]
+    for number in range(numbers[AXES]):
+        op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
+        first, last = op[0], op[0] + op[1] * op[2] * op[3]
+        for k in range(first, last):
+            change[k] = slow[k] = y[k] - still[k]
+        solved &= solve(op, a, change, slow, exact, floats, tables, scratch, room)
+        for k in range(first, last):
+            rest[k], more_slow[k] = change[k] - slow[k], 0.0
+        solved &= solve(op, a, rest, more_slow, exact, floats, tables, scratch, room)
+        for k in range(first, last):
+            y[k] = still[k] + slow[k] + more_slow[k]
+    return solved
+
+
+@lean(DENSE)
+def dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
+    """The cubic through the ends of the step and its rates there; in a step that begins, without the rate at its start,
+    which may be that of walls set moving at once, a parabola."""
+    goes_on = settings[numbers[TABLES_AT] - 2] == 1.0
+    for k in range(y0.size):
+        change = y1[k] - y0[k]
+        first = h * rate0[k] if goes_on else 2.0 * change - h * rate1[k]
+        bend = (1.0 - 2.0 * theta) * change + (theta - 1.0) * first + theta * h * rate1[k]
+        out[k] = (1.0 - theta) * y0[k] + theta * y1[k] + theta * (theta - 1.0) * bend
+
+
 @lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; its error by the embedded method."""
@@ -110,8 +151,10 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     tolerance, sizes = settings[2 * s * s + 3 * s], settings[2 * s * s + 3 * s + 1 :]
     one = numbers[numbers[FLOW_AT] :]
     rate = rate_at(functions[AT_RATE])
+    first, last = one[AT], one[AT] + one[FACES]
     floats[one[SKIP]] = 1.0
-    solved = True
+    solved, goes_on = True, settings[latest] == t and same(y0, end)
+    settings[latest - 1] = 1.0 if goes_on else 0.0
     for i in range(s):
         own, mine = explicit[i * n : (i + 1) * n], damped[i * n : (i + 1) * n]
         if i == 0:
@@ -130,7 +173,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
                 y1[k] = wanted[k]
             a, exact = h * d[i * s + i], max(EXACT, SHARE * tolerance)
             solved &= implicit(a, exact, wanted, y1, room, more, floats, tables, numbers)
-        if i == 0 and one[LED] == 0 and same(y0, end) and settings[latest] == t:
+        if i == 0 and one[LED] == 0 and goes_on:
             for k in range(n):
                 own[k] = end_rate[k]
         else:
@@ -145,14 +188,18 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             own[k] -= mine[k]
         spread(y1, mine, 0, velocities, floats, numbers)
     for k in range(n):
-        total = error = 0.0
+        end[k] = y1[k]
+        total = error = beyond = 0.0
         for j in range(s):
             both = explicit[j * n + k] + damped[j * n + k]
             total += b[j] * both
             error += wrong[j] * both
-        y1[k] = y0[k] + h * total
+            beyond += (b[j] - e[(s - 1) * s + j]) * explicit[j * n + k]
+        y1[k] = y1[k] + h * beyond if first <= k < last else y0[k] + h * total
         wanted[k] = h * error
     solved &= project(y1, VELOCITY, floats, one) and project(wanted, CHANGE, floats, one)
+    solved &= quiet(h * d[s * s - 1], max(EXACT, SHARE * tolerance), end, y1, room, more, floats, tables, numbers)
+    solved &= project(y1, VELOCITY, floats, one)
     for number in range(numbers[OPERATORS]):
         tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
     rate(t + h, y1, end_rate, floats, ints)

@@ -61,7 +61,7 @@ def flow_in(t, y, rate, floats, ints):
                 for i in range(nx + 1):
                     crossing = rows[wide + i]
                     if component == 0 and not around and (i == 0 or i == nx):
-                        crossing = min(through[row], 0.0) if i == 0 else max(through[row + nx - 1], 0.0)
+                        crossing = through[row] if i == 0 else through[row + nx - 1]
                     if around and i == nx:
                         crossing = rows[wide]
                     low, high = beside(i, component == 0, 0, one)
@@ -91,9 +91,9 @@ def flow_in(t, y, rate, floats, ints):
                     for i in range(nx):
                         crossing = rows[i]
                         if component == axis and not periodic and place == 0:
-                            crossing = min(through[here + i], 0.0)
+                            crossing = through[here + i]
                         elif component == axis and place == count:
-                            crossing = max(through[before + i], 0.0)
+                            crossing = through[before + i]
                         dense = below[i] if crossing > 0.0 else above[i]
                         if place < count:
                             momentum[here + i] += dense * flux[i]

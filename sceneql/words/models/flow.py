@@ -24,7 +24,9 @@ from sceneql.flows.parts import (
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts, too_far
 from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of, number_in, spacing_of
 from sceneql.grids.multigrid.linear_solvers import Linear
+from sceneql.grids.probing import misnamed, outside
 from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Value, field, quantity_type
+from sceneql.kinds.probed import Probed
 from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import suggestion
@@ -118,6 +120,9 @@ class Flow(Model):
         "the others compare, and give the output `residuals`.",
         "auto",
     )
+    probes: dict[str, SIZES] = field(
+        "Places by name: `behind: 0.7 0.5 m` in a flow `air` gives `air.behind.velocity` and `air.behind.pressure`.", {}
+    )
     force: FORCE | None = field("A force on each cubic meter, by place and time: a component for each side.", None)
     buoyancy: Buoyancy | None = field("What a temperature or concentration does to it.", None)
 
@@ -163,6 +168,10 @@ class Flow(Model):
             found[f"{name}.torque"] = Gives(
                 quantity_type(dim.FORCE * dim.LENGTH, (3,)), "Its torque about the origin.", computed=True
             )
+        probes = written.get("probes")
+        for name in map(str, probes if isinstance(probes, Mapping) else ()):
+            found[f"{name}.velocity"] = Gives(quantity_type(dim.VELOCITY, (3,)), "The velocity there.", computed=True)
+            found[f"{name}.pressure"] = Gives(quantity_type(dim.PRESSURE), "The pressure there.", computed=True)
         return found
 
     @property
@@ -173,6 +182,12 @@ class Flow(Model):
     def insides(self) -> Iterable[kinds.Ref]:
         """The solids, and what it fills."""
         return self.skins
+
+    def probed(self) -> Iterable[Probed]:
+        """Probes in what it fills."""
+        if self.domain is not None:
+            for name, place in self.probes.items():
+                yield Probed(("probes", name), place, self.domain, self.cell)
 
     def shaped(self) -> Iterable[kinds.Ref]:
         """The same: cells are cut by them, wherever they move."""
@@ -197,6 +212,7 @@ class Flow(Model):
         if self.flat and self.size is not None:
             yield Problem("`flat` is for a `domain`: a box is flat where it has two sides", ("flat",), at_key=True)
         yield from self._named()
+        yield from misnamed(self.probes, [*self.gives, *(ref.name for ref in self.skins)])
         if self.size is None:
             return
         if len(self.size) not in (2, 3) or (self.corner is not None and len(self.corner) != len(self.size)):
@@ -207,6 +223,7 @@ class Flow(Model):
             return
         if self.corner is not None and (wrong := too_far(self.corner, self.cell)):
             yield Problem(wrong, ("corner",), code="out-of-range")
+        yield from outside(self.probes, self.corner or (0.0,) * len(self.size), self.size)
         shape = counts(self.size, self.cell)
         cells = shape[0] * shape[1] * shape[2]
         if cells > MOST_CELLS:
@@ -347,9 +364,12 @@ class Flow(Model):
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells,), (cells, 3), (3,) or float."""
-        from sceneql.flows.readings import measure
+        from sceneql.flows.readings import at_place, measure
 
         name, _, what = output.rpartition(".")
+        if name in self.probes:
+            place = self.probes[name]
+            return at_place(what, place, self.layout(state, output), state.ints[5:], self.density, state)
         if name:
             from sceneql.flows.obstacles.solid_forces import on_solid
 

@@ -15,7 +15,6 @@ from sceneql.island.memory import bounded
 from sceneql.kinds import Clock, Doubt, Gives, Model, Moment, Problem, Record, Ref, Value, field, quantity_type
 from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.shapes.color import default_color, linear
 
 if TYPE_CHECKING:
@@ -194,10 +193,7 @@ class Particles(Model):
         assert self.of is not None
         driven = assembly.object(self.of)
         place = getattr(driven, "position", None)
-        if not isinstance(place, Value):
-            word = type(driven).__name__.lower()
-            message = f"'{self.of.name}' is a {word}, which has no position that a particle could drive"
-            raise ScriptError([Diagnostic("no-position", message, self.of.span)])
+        assert isinstance(place, Value)  # the compiler has refused others
         start = np.asarray(assembly.initial(place), dtype=float).reshape(1, 3)
         if self.radius is not None:
             return start, self.radius

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 class Gear(Joint):
     """Two wheels turn by as many teeth, in opposite senses about one axis, as if they met outside.
 
-    Each turns about an axis that keeps its direction in the world: a `hinge` on the world holds it there.
+    Each turns about an axis that keeps its direction in the world: a `hinge` on the world holds it there. The axle of a
+    planet's wheel may go round on an arm about that axis (`between: [train.planet, train.arm]` in its hinge): the
+    wheels turn against the line from axle to axle. An axle is the hinge nearest to the wheel's center of mass, or that
+    center. The force is that of the teeth where they meet, across this line.
     """
 
     gives: ClassVar[Mapping[str, Gives]] = FORCES
@@ -42,4 +45,5 @@ class Gear(Joint):
             start, _ = across(axis)
             vectors += [(axis[0], axis[1], axis[2]), (start[0], start[1], start[2]), side.direction(start)]
         one, other = self.teeth
-        return [TieRow("gear", tuple(vectors), (one, -other if self.inner else other))]
+        no_line = 3 * [(0.0, 0.0, 0.0)]  # it is told once all hinges are known (bodies/rigid/wheels.py)
+        return [TieRow("gear", (*vectors, *no_line), (one, -other if self.inner else other, 0.0))]
