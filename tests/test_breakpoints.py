@@ -398,3 +398,40 @@ def test_chance_in_a_source_is_compiled(tmp_path):
     island.advance(1.0)
     drawn = [chance(i, j, 2) for j in range(4) for i in range(4)]
     assert island.state("m").y[:16] == pytest.approx(drawn, rel=1e-12)
+
+
+PULSE = '"where((t > 3)*(t < 3.01), 100, 0)"'
+
+
+@pytest.mark.parametrize(
+    ("model", "output"),
+    [
+        (f"diffusion: {{coefficient: 0.01 m^2/s, initial: 0, source: {PULSE}, ", "field.mean"),
+        (
+            f"diffusion: {{coefficient: 0.01 m^2/s, initial: 0, boundary: {{left: {{flux: {PULSE}}}}}, ",
+            "field.mean",
+        ),
+        (
+            f"diffusion: {{method: elements, element: p1, coefficient: 0.01 m^2/s, initial: 0, source: {PULSE}, ",
+            "field.mean",
+        ),
+        (
+            f"reaction_diffusion: {{species: {{u: {{coefficient: 0.01 m^2/s, initial: 0, rate: {PULSE}}}}}, ",
+            "field.u.mean",
+        ),
+    ],
+)
+def test_short_pulses_of_fields_are_felt(tmp_path, model, output):
+    """Steps of chosen length went over a source of 10 ms in a field at rest, without a word."""
+    script = f"models: {{field: {{{model}size: 1 1 m, cell: 0.25 m}}}}}}\nclock: {{end: 10 s}}\n"
+    ((mean,),) = watch(tmp_path, script, [10.0], output)
+    assert mean == pytest.approx(1.0, abs=1e-9)
+
+
+def test_a_short_pulse_moves_water_as_a_whole(tmp_path):
+    script = f"""
+models: {{pond: {{wave: {{size: 1 1 m, cell: 0.25 m, speed: 1 m/s, source: {PULSE}}}}}}}
+clock: {{end: 10 s}}
+"""
+    ((height,),) = watch(tmp_path, script, [10.0], "pond.mean")
+    assert height == pytest.approx(10 - 3.005, abs=1e-8)

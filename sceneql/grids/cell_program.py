@@ -29,7 +29,7 @@ def over_cells(
     assembly: Assembly, expr: Expr, at: int, arrays: tuple[int, int, int], shape: tuple[int, int, int], box: int
 ) -> tuple[str, tuple[int, ...]]:
     """Name of a kernel over all cells, and its integers; ``arrays``: offsets of target, base, weight."""
-    constants, printer, value = _printed(expr)
+    constants, printer, value = _printed(assembly, expr)
     lines = [
         "    field, target, base, weight = ints[1], ints[2], ints[3], ints[4]",
         "    nx, ny, nz, box = ints[5], ints[6], ints[7], ints[8]",
@@ -55,7 +55,7 @@ def over_faces(
     assembly: Assembly, expr: Expr, at: int, target: int, weight: int, points: int, cells: Sequence[int]
 ) -> tuple[str, tuple[int, ...]]:
     """Name of a kernel over boundary faces, and its integers; ``cells``: the cell of each face."""
-    constants, printer, value = _printed(expr)
+    constants, printer, value = _printed(assembly, expr)
     lines = [
         "    field, target, weight, points = ints[1], ints[2], ints[3], ints[5]",
         "    for k in range(ints[4]):",
@@ -77,7 +77,7 @@ def over_points(
 
     ``field``: offset in the floats of the field at the points; any offset where the formula does not read it.
     """
-    constants, printer, value = _printed(expr)
+    constants, printer, value = _printed(assembly, expr)
     lines = [
         "    field, target, points = ints[1], ints[2], ints[4]",
         "    for k in range(ints[3]):",
@@ -90,7 +90,8 @@ def over_points(
     return write_term("points", constants, 5, lines), (*head, *_stored(assembly, constants))
 
 
-def _printed(expr: Expr) -> tuple[Constants, Printer, str]:
+def _printed(assembly: Assembly, expr: Expr) -> tuple[Constants, Printer, str]:
+    assembly.stop_at_breakpoints(expr)
     constants = Constants()
     printer = Printer(NAMES, {}, constants)
     return constants, printer, printer.name(constants.lift(components(expr)[0]))

@@ -25,6 +25,8 @@ PLACES = {"x": "own_x", "y": "own_y", "z": "own_z", "t": "t", "time": "t"}
 
 def add_reaction(system: RateSystem, ground: Ground, fields: Sequence[int], assembly: Assembly) -> None:
     """Add the reaction term of fields that start at ``fields`` in y, with its symbolic Jacobian."""
+    for expr in (*system.rows, *system.where.values()):
+        assembly.stop_at_breakpoints(expr)
     constants = Constants()
     meanings, rows = lifted(system, constants)
     printer = Printer(_names(system), meanings, constants)
