@@ -187,7 +187,7 @@ def render(
         ending.close()
     report.warnings = (*missing(report.present, graph.tasks), *decided_by_rounding(report.rounded, graph.tasks))
     report.warnings += (*watch.warnings(), *run.warnings(), *_diverged(runs))
-    report.warnings += (*blind(report.within, graph.tasks), *covered(report.covered, graph.tasks))
+    report.warnings += (*blind(report.within, graph.tasks, graph.warnings), *covered(report.covered, graph.tasks))
     report.conserved = watch.account()
     seconds, count = _compiled()
     report.compile_seconds, report.compilations = seconds - compiled[0], count - compiled[1]

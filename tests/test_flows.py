@@ -12,6 +12,7 @@ from sceneql.flows.readings import _own
 from sceneql.grids.medium import FieldLayout
 
 EDDY = {"initial": '{stream_function: "sin(pi*x)^2*sin(pi*y)^2"}', "viscosity": "0.02 Pa*s", "advection": "central"}
+SLIP = "{wall: {slip: free}}"
 BESIDE = '{left: {inflow: {velocity: "[1, 0]"}}, right: {outflow: {}}}'
 
 
@@ -179,10 +180,21 @@ def test_the_pressure_outside_drives_a_flow(tmp_path):
 @pytest.mark.parametrize("viscosity", ["1e-3 Pa*s", "1e-3*(1 + x)"])
 def test_what_a_pressure_sets_moving_comes_to_the_speed_of_bernoulli(tmp_path, viscosity):
     """Fluid that rests outside: L du/dt = p/density - u^2/2."""
-    sides = "{rest: {wall: {slip: free}}, left: {outflow: {pressure: 4 Pa}}, right: {outflow: {}}}"
+    sides = f"{{rest: {SLIP}, left: {{outflow: {{pressure: 4 Pa}}}}, right: {{outflow: {{}}}}}}"
     size = {"size": "1 0.25 m", "density": "2 kg/m^3", "cell": "1/8 m"}
     air = Air(tmp_path, "{auto: {}}", 1.0, boundary=sides, viscosity=viscosity, **size).at(1.0)
     assert air.read("largest_speed") == pytest.approx(2.0 * np.tanh(1.0), rel=2e-3)
+
+
+@pytest.mark.parametrize("ramp", ["t^2", "t^3"])
+def test_what_rests_under_a_pressure_is_set_moving_smoothly(tmp_path, ramp):
+    """p = 1 Pa + density (1 m - x) du/dt: steps by a tolerance shrank to nothing."""
+    sides = f'{{left: {{inflow: {{velocity: "[{ramp}, 0]"}}}}, right: {{outflow: {{pressure: 1 Pa}}}}, rest: {SLIP}}}'
+    more = {"size": "1 0.25 m", "cell": "1/8 m", "probes": "{here: 0.25 0.1 m}"}
+    air = Air(tmp_path, "{auto: {}}", 1.0, boundary=sides, **more).at(0.5)
+    power = int(ramp[-1])
+    assert air.read("here.velocity")[0] == pytest.approx(0.5**power, rel=1e-3)
+    assert air.read("here.pressure") == pytest.approx(1.0 + 0.75 * power * 0.5 ** (power - 1), rel=1e-3)
 
 
 # --- solids ---

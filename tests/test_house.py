@@ -6,6 +6,9 @@ from house import BARS, lazy_links
 from modules import whole_house
 
 LAZY = {
+    "bodies.elements.strain_slopes_kernels": {
+        "bodies.elements.laws.viscous_slopes_kernels": "for solids with a retardation"
+    },
     "bodies.rigid.moved_bodies_kernels": {
         "bodies.rigid.tied_rows_kernels": "for bodies that are tied",
         "bodies.rigid.tied_step_kernels": "for bodies that are tied",

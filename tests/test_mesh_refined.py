@@ -128,6 +128,21 @@ def test_refined_walls_that_stay_too_thin_are_told():
     assert 0.0061575226482 < left.volume < 0.3 * before.volume
 
 
+@pytest.mark.parametrize("along", ["x", "y", "z"])
+def test_a_sheet_that_passes_cells_twice_is_cut_further_or_told(along):
+    """It lies in cells that show a change of sign, but was torn where no node lies inside of it."""
+    others = "xyz".replace(along, "")
+    sheet = f"max(abs({along} - 0.1*sin(5*{others[0]})) - {{}}, abs({others[0]}) - 0.5, abs({others[1]}) - 0.1)"
+    found, left = cut_finer(sheet.format(0.008), 0.525, 16)
+    assert_closed_manifold(found)
+    assert euler_characteristic(found.triangles) == 2
+    assert volume(found.vertices, found.triangles) == pytest.approx(0.016 * 0.2, rel=0.02)
+    assert not left.cells
+    found, left = cut_finer(sheet.format(0.003), 0.525, 16)
+    assert euler_characteristic(found.triangles) != 2
+    assert left.seen.sum() > 100
+
+
 def test_refined_edges_are_cut_less():
     errors = [
         1.4**3 - volume(found.vertices, found.triangles)

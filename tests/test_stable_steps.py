@@ -244,7 +244,7 @@ def test_numbers_beyond_all_doubles_leave_a_check_whole(tmp_path):
     )
     outputs = "clock: {end: 1 s}\noutputs: {data: {record: {of: [water.kinetic_energy]}}}\n"
     assert ["stable at no step" in one for one in warnings(loaded(tmp_path, stream + outputs))] == [True]
-    cells = "models: {m: {diffusion: {size: 1 1 m, cell: 1e308 m, coefficient: 1 m^2/s}}}\n"
+    cells = "models: {m: {diffusion: {size: 1 1 m, cell: 1e308 m, coefficient: 1 m^2/s, initial: x}}}\n"
     cells += "solvers: {main: {rk4: {step: 1 ms}}}\n"
     assert warnings(loaded(tmp_path, cells + outputs.replace("water.kinetic_energy", "m.mass"))) == []
 

@@ -9,6 +9,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import KEYS, check
 from sceneql.compiler.meaning.doubtful import warn_of_meaning, warn_of_unused_parts
 from sceneql.compiler.meaning.facts import Facts
+from sceneql.compiler.meaning.listed_masses import report_masses
 from sceneql.compiler.names import Parsed
 from sceneql.compiler.over_time import check_latest
 from sceneql.compiler.passes.as_balls import warn_of_balls, warn_of_two_models
@@ -93,6 +94,7 @@ def compile_script(
     report_boundary_names(script, tasks, found)
     report_empty_holds(tasks, found)
     report_overlaps(tasks, groups, found)
+    report_masses(tasks, groups, found)
     report_outside_flows(tasks, found)
     found.raise_errors()
     warn_of_sections(tasks, found)

@@ -311,7 +311,7 @@ def _factored(
 
 def _beside_few(pattern: Any, places: Floats, exact: bool) -> _Solver | None:
     """Factors of the masses among the unknowns, with all others as a border; None where that does not pay."""
-    from sceneql.linear import bordered, bordered_kernels
+    from sceneql.linear import bordered
     from sceneql.linear.multifrontal import planning
 
     many = bordered.split(places)
@@ -320,6 +320,8 @@ def _beside_few(pattern: Any, places: Floats, exact: bool) -> _Solver | None:
     plan = planning.plan(bordered.within(pattern, many), None, places[many], 1, exact)
     if plan.operations > MOST_OPERATIONS:
         return None
+    from sceneql.linear import bordered_kernels  # compiled by those alone that need them
+
     found = bordered.bordered(pattern, many, plan.numbers, plan.factors, plan.work)
     few, all_ = int((~many).sum()), len(many)
     text = f"sparse factorization of {all_} unknowns, {plan.factors:.3g} numbers in its factors, and {few} beside them"

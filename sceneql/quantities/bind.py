@@ -61,7 +61,7 @@ def _bound(node: Expr, bound: dict[int, Expr | None], lookup: Lookup, found: Dia
                 if node.op == "hue":
                     _doubt_hue(node, found)
                 if node.op == "random":
-                    _doubt_range(node, found)
+                    _doubt_range(node, lookup, found)
                 if node.op in TURNS:
                     _doubt_degrees(node, found)
                 return fold(Call(node.op, args, OPERATIONS[node.op].rule(args), node.span))
@@ -122,7 +122,7 @@ def _doubt_hue(call: Call, found: Diagnostics) -> None:
         found.warning("turns", text, call.span, help=help)
 
 
-def _doubt_range(call: Call, found: Diagnostics) -> None:
+def _doubt_range(call: Call, lookup: Lookup, found: Diagnostics) -> None:
     """Warn of two numbers behind `random` that can only be meant as the ends of a range: they are whole ones else."""
     texts = ["" if arg.span is None else arg.span.text for arg in call.args]
     try:
@@ -131,7 +131,10 @@ def _doubt_range(call: Call, found: Diagnostics) -> None:
         return
     if low < high and (low < 0 or not (low.is_integer() and high.is_integer())):
         text = f"`random({texts[0]}, {texts[1]})` is a number from 0 to 1, of the whole numbers {low:g} and {high:g}"
-        help = f"a number from {low:g} to {high:g} is `mix({low:g}, {high:g}, random(1))`"
+        copy = call.span is not None and isinstance(lookup(("i",), call.span), Number)
+        which = "random(i)" if copy else "random(1)"
+        help = f"a number from {low:g} to {high:g} is `mix({low:g}, {high:g}, {which})`"
+        help += ", another one for each copy; in another component `random(i, 1)`" if copy else ""
         found.warning("chance-range", text, call.span, help=help)
 
 

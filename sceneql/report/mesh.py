@@ -49,7 +49,7 @@ class Account:
     folded: int
     """Triangles that are folded over (``overturned``; for sharp meshes ``folds``)."""
     unresolved: int
-    """Number of cells without a change of sign that are not proved empty or full."""
+    """Number of cells in which surface may pass between corners of one sign."""
     unresolved_volume: float
     """[m^3]"""
     missed: float
@@ -72,8 +72,8 @@ class Account:
         if self.unresolved:
             cells = "1 cell" if self.unresolved == 1 else f"{self.unresolved} cells"
             lines.append(
-                f"{cells} unresolved, {self.unresolved_volume:.3g} m^3 in all: without a change of sign at the corners,"
-                " but not proved empty or full; a smaller --cell resolves more"
+                f"{cells} unresolved, {self.unresolved_volume:.3g} m^3 in all: not proved to hold no surface that"
+                " passes between their corners; a smaller --cell resolves more"
             )
         if self.missed:
             lines.append(

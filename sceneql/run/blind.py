@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -73,9 +73,12 @@ def _turns(corners: Floats) -> float:
     return abs(float(np.arctan2(up, down).sum())) / (2.0 * np.pi)
 
 
-def warnings(within: Within, tasks: Mapping[str, Task]) -> Iterator[Diagnostic]:
-    """A warning for each camera and each part that it stood in."""
+def warnings(within: Within, tasks: Mapping[str, Task], told: Collection[Diagnostic] = ()) -> Iterator[Diagnostic]:
+    """A warning for each camera and each part that it stood in, unless it is ``told`` of already."""
+    known = [one.span for one in told if one.code == "camera-inside"]
     for (camera, part), (first, last) in within.items():
+        if tasks[camera].span in known:
+            continue
         when = f"at {first:.3g} s" if first == last else f"from {first:.3g} s to {last:.3g} s"
         text = f"the camera '{camera}' stands inside '{part}' {when}: it sees nothing else"
         help = f"lead it around '{part}', or move the part out of its way"

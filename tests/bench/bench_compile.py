@@ -92,7 +92,7 @@ ISLANDS = {
     "cloth, bdf2": scene(CLOTH, "bdf2"),
     "cloth on sphere, rk4": scene(CLOTH, "rk4", touched="sphere"),
     "elements, bdf2": scene(SOFT, "bdf2"),
-    "elements with barrier on sphere and plane, bdf2": scene(SOFT, "bdf2", touched="sphere plane"),
+    "elements with barrier on sphere and plane, bdf2": scene(SOFT, "bdf2", touched="sphere plane", mode="barrier"),
     "heat in a square, crank_nicolson": scene(HEAT, "crank_nicolson", ""),
     "heat in a ball, implicit_euler": scene(BALL, "implicit_euler", ""),
     "stars by tree, verlet": scene(

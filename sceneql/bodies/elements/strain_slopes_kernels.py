@@ -4,6 +4,8 @@
 Newton's method gets them with the stress that its latest update predicted (foreseen_kernels).
 """
 
+from numba import types
+
 import sceneql.system.channels as channels
 from sceneql.bodies.elements.foreseen_kernels import PRESSURES, SEEN, TURN, foreseen, put_foreseen
 from sceneql.bodies.elements.laws.law_kernels import SCRATCH, stiffness_at
@@ -19,10 +21,8 @@ from sceneql.bodies.elements.strain_kernels import (
     NUMBERS_AT,
     POINT,
     POINTS,
-    RATE,
     RETARDATION_AT,
     STIFFNESS,
-    STRAIN,
     THREADS,
     WEIGHTS_AT,
     D,
@@ -31,8 +31,9 @@ from sceneql.bodies.elements.strain_kernels import (
     look,
 )
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.threads_kernels import TILE, over_threads
-from sceneql.system.signatures_kernels import TERM
+from sceneql.system.signatures_kernels import TERM, A, F, I, N
 
 SLOPES_ROOM_AT, SLOPES_TILES, SLOPES_TILE_AT, FORESEES, HELD_AT, OWN_INTS = range(6)
 """From the end of the integers, OWN_INTS: offset of ROOM numbers a tile; tiles, their address; 1 where stresses are
@@ -46,6 +47,10 @@ SEEN_AT = OTHER + 3 * MOST_NODES
 ROOM = SEEN_AT + SEEN + TURN
 """In a tile's scratch behind that of forces: the stiffness c, a third of it by one gradient, and the derivatives of
 the mean of d and of tr E' by the nodes' places and velocities, the predicted stresses."""
+
+VISCOUS = types.void(N, F, N, N, A, A, I)
+
+viscous = lazy("sceneql.bodies.elements.laws.viscous_slopes_kernels:viscous", VISCOUS)
 
 
 @lean_inlined
@@ -75,40 +80,6 @@ def mirror(entries, to, nodes):
             for i in range(3):
                 for k in range(3):
                     entries[at + 3 * i + k] = entries[other + 3 * k + i]
-
-
-@lean_inlined
-def damped_by_velocity(f, first, shear, own, c):
-    """Write the derivative of F S by F': shear (F F^T 1 + F F) + first F F, the last where ``own``."""
-    for i in range(3):
-        for k in range(3):
-            square = f[3 * i] * f[3 * k] + f[3 * i + 1] * f[3 * k + 1] + f[3 * i + 2] * f[3 * k + 2]
-            for j in range(3):
-                for l in range(3):
-                    value = shear * f[3 * i + l] * f[3 * k + j]
-                    if j == l:
-                        value += shear * square
-                    if own:
-                        value += first * f[3 * i + j] * f[3 * k + l]
-                    c[9 * (3 * i + j) + 3 * k + l] = value
-
-
-@lean_inlined
-def damped_by_place(f, rate, strain, trace, first, shear, own, c):
-    """Write the derivative of F S by F: S 1 + shear (F F' + F F'^T 1) + first F F', the last where ``own``."""
-    for i in range(3):
-        for k in range(3):
-            square = f[3 * i] * rate[3 * k] + f[3 * i + 1] * rate[3 * k + 1] + f[3 * i + 2] * rate[3 * k + 2]
-            for j in range(3):
-                for l in range(3):
-                    value = shear * f[3 * i + l] * rate[3 * k + j]
-                    if j == l:
-                        value += shear * square
-                    if own:
-                        value += first * f[3 * i + j] * rate[3 * k + l]
-                    if i == k:  # the place of the component in strain: xx, yy, zz, yz, xz, xy
-                        value += 2.0 * shear * strain[j if j == l else 6 - j - l] + (first * trace if j == l else 0.0)
-                    c[9 * (3 * i + j) + 3 * k + l] = value
 
 
 @lean_inlined
@@ -157,12 +128,11 @@ def slopes_tile(number, positive, y, entries, floats, ints):
     nodes, points, numbers = ints[NODES], ints[POINTS], ints[NUMBERS]
     tiles, room = ints[own + SLOPES_TILES], ints[own + SLOPES_ROOM_AT] + ROOM * number
     damped, mean = ints[RETARDATION_AT] >= 0, ints[MEAN] == 1
-    tau = floats[ints[RETARDATION_AT]] if damped else 0.0
     definite = 1 if positive > 0.0 else 0
     stiffness = stiffness_at(ints[STIFFNESS])
     size, elements = 9 * nodes * nodes, ints[ELEMENTS]
     c = floats[room + C : room + C + 81]
-    left, right = floats[room + OWN : room + OWN + 3 * nodes], floats[room + OTHER : room + OTHER + 3 * nodes]
+    left = floats[room + OWN : room + OWN + 3 * nodes]
     predicts = definite == 0 and ints[own + FORESEES] == 1 and floats[channels.NEWTON] > 0.0
     before = floats.size - channels.BEFORE * y.size
     old, turned = floats[before : before + y.size], floats[room + SEEN_AT + SEEN : room + SEEN_AT + SEEN + TURN]
@@ -203,26 +173,7 @@ def slopes_tile(number, positive, y, entries, floats, ints):
             add_means(floats, ints, e, room + M, left)
             add_products(entries, to, nodes, (max(bulk, 0.0) if definite == 1 else bulk) / volume, left, left)
         if damped:
-            for q in range(points):
-                at, law = room + POINT * q, ints[NUMBERS_AT] + numbers * (points * e + q)
-                weight, f = floats[ints[WEIGHTS_AT] + points * e + q], floats[at : at + 9]
-                first, shear = tau * floats[law + numbers - 2], tau * floats[law + numbers - 1]
-                damped_by_velocity(f, first, shear, not mean, c)
-                add_blocks(floats, ints, e, q, weight, room, entries, moving, True)
-                if definite == 0:
-                    strain = floats[at + STRAIN : at + STRAIN + 6]
-                    trace = swelling if mean else strain[0] + strain[1] + strain[2]
-                    damped_by_place(f, floats[at + RATE : at + RATE + 9], strain, trace, first, shear, not mean, c)
-                    add_blocks(floats, ints, e, q, weight, room, entries, to, False)
-            mirror(entries, moving, nodes)
-            if mean:
-                first = tau * floats[ints[NUMBERS_AT] + numbers * points * e + numbers - 2]
-                add_means(floats, ints, e, room, left)
-                add_products(entries, moving, nodes, first / volume, left, left)
-                if definite == 0:
-                    add_means(floats, ints, e, room + RATE, right)
-                    add_products(entries, to, nodes, first / volume, left, right)
-            hold_rows(ints, ints[own + HELD_AT], e, entries, moving)
+            viscous(e, swelling, definite, room, entries, floats, ints)
         hold_rows(ints, ints[own + HELD_AT], e, entries, to)
 
 

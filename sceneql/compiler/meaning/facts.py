@@ -8,7 +8,20 @@ from functools import cached_property
 from typing import Any
 
 from sceneql.graph import Island, Task
-from sceneql.kinds import Clock, Interaction, Material, Model, Object, Output, Picture, Settings, Tie, Value
+from sceneql.kinds import (
+    Camera,
+    Clock,
+    Interaction,
+    Material,
+    Model,
+    Object,
+    Output,
+    Overlay,
+    Picture,
+    Settings,
+    Tie,
+    Value,
+)
 from sceneql.language.script import Script
 
 
@@ -35,6 +48,17 @@ class Facts:
         """Seconds of the simulation from one frame to the next, in the film that has the fewest [s]."""
         films = [getattr(task.kind, "fps", None) or self.clock.fps for task in self.tasks.values() if _films(task)]
         return self.clock.speed / min(films, default=self.clock.fps)
+
+    @cached_property
+    def whole(self) -> bool:
+        """Whether a film is meant, and not a piece of a script: with a clock, a camera, an overlay or an output."""
+        seen = (Camera, Overlay, Output)
+        return "clock" in self.script.settings or any(task.span and isinstance(task.kind, seen) for task in self.all)
+
+    @property
+    def all(self) -> Iterator[Task]:
+        """All parts."""
+        return iter(self.tasks.values())
 
     @cached_property
     def objects(self) -> dict[str, Object]:

@@ -52,6 +52,9 @@ def warn_of_one_place(tasks: Mapping[str, Task], found: Diagnostics) -> None:
         if len(several) > 1 and all(one == looks[0] for one in looks):
             text = f"all {len(several)} copies of '{name}' stand in one place"
             help = "let the copy's number stand in `position`, as `[i*(0.5 m), 0 m, 0 m]`"
+            place = getattr(several[0].kind, "position", None)
+            if isinstance(place, Value) and place.span is not None and "random" in place.span.text:
+                help = "let the copy's number stand in its chance: `random(i)`, in another component `random(i, 1)`"
             found.warning("one-place", text, several[0].span, help=help)
 
 

@@ -49,7 +49,7 @@ def warn_of_unforced(tasks: Mapping[str, Task], groups: Sequence[Island], found:
     moved = [task.name for task in tasks.values() if isinstance(task.kind, Object) and not task.kind.grounds]
     acting = [t for t in tasks.values() if isinstance(t.kind, Interaction | Contact) and not isinstance(t.kind, Tie)]
     some = [ref for task in acting if isinstance(task.kind, Interaction) for ref in task.kind.targets() or ()]
-    led = any(not value.constant for task in tasks.values() if _leads(task) for value in values_of(task.kind))
+    led = any(not value.constant for task in tasks.values() if leads(task) for value in values_of(task.kind))
     for task in acting[:1] if moved and not solved and not led else ():
         text = f"'{task.name}' acts on masses, and no model has any: nothing moves"
         help = f"a model moves an object: `models: {{fall: {{particles: {{of: {moved[0]}, mass: 1 kg}}}}}}`"
@@ -206,7 +206,7 @@ def _circling(masses: Sequence[tuple[str, StaticMass]]) -> tuple[str, str]:
     return "1", ""
 
 
-def _leads(task: Task) -> bool:
+def leads(task: Task) -> bool:
     """Whether a part may carry or push masses: an object that no model moves, or a kinematic model."""
     if isinstance(task.kind, Model):
         return task.kind.kinematic

@@ -163,5 +163,5 @@ def warn_of_dim(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     if power > 0.0 and None not in lamps and away and power < FAINT * (2.0 * pi * min(away)) ** 2:
         text = f"'{lights[0].name}' is {min(away):.3g} m away: what is white there is "
         text += f"{power / (2.0 * pi * min(away)) ** 2:.1g} as bright as white"
-        help = "bring it nearer; a `sun` shines from any distance: `{sun: {direction: -1 -1 -1}}`"
+        help = "bring it nearer; a `sun` shines from any distance: `{sun: {direction: 1 1 1}}`"
         found.warning("dim-light", text, lights[0].span, help=help)

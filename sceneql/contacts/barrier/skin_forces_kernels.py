@@ -3,19 +3,21 @@
 
 import math
 
+from numba import types
+
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import barrier, mobilized, push
 from sceneql.contacts.barrier.friction_slopes_kernels import foreseen
 from sceneql.contacts.barrier.objects_kernels import stale
-from sceneql.contacts.barrier.on_bodies_kernels import push_body, speed_on_body
+from sceneql.contacts.barrier.on_bodies_kernels import THREE, push_body, speed_on_body
 from sceneql.contacts.barrier.pair_weights_kernels import listed, node, product, stencil
 from sceneql.contacts.barrier.pairs_kernels import known, vertex
-from sceneql.system.signatures_kernels import TERM
+from sceneql.system.signatures_kernels import TERM, A, F, I, N
 
 
-@lean_inlined
+@lean(types.void(A, A, A, I, N, F, F, F))
 def add(rate, y, floats, ints, k, x, y_, z):
     """Add a force to a vertex, and take its power from the work."""
     at = vertex(ints, k)
@@ -38,7 +40,7 @@ def speed(y, floats, ints, at):
     return y[p], y[p + 1], y[p + 2]
 
 
-@lean_inlined
+@lean(THREE(A, A, I, N))
 def sliding(y, floats, ints, at):
     """The velocity of a lagged pair across its normal."""
     u = v = w = 0.0

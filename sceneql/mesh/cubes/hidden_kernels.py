@@ -11,9 +11,11 @@ from sceneql.field.tape.simplify_kernels import simplify
 from sceneql.field.tape.steepness_kernels import steepness, turning
 from sceneql.field.tape.tape_kernels import value
 from sceneql.field.tape.tape_ops import MAX, MIN, NOWHERE, TAPE, WHOLE
+from sceneql.mesh.cubes.corner_kernels import in_doubt, least_at_corners, of_corners
 from sceneql.mesh.cubes.cull_kernels import CLEAR, CUT, verdict
 from sceneql.mesh.cubes.grid import BLOCK
 from sceneql.mesh.cubes.sample_kernels import NODES, sample
+from sceneql.mesh.cubes.slipped_kernels import slipped
 
 SIDE = BLOCK // 2
 """Cubes along an eighth of a block, and pairs of cubes along a block."""
@@ -202,59 +204,6 @@ def doubtful(
 
 
 @inlined
-def of_corners(values, nodes, x, y, z, wide):
-    """(whether f < 0 at a cube's first corner, least |f| at its corners); infinite where their signs differ.
-
-    Of the cube of ``wide`` steps from node (x, y, z) on, among ``nodes`` along each axis.
-    """
-    p = (z * nodes + y) * nodes + x
-    negative = values[p] < 0.0
-    least = np.inf
-    for c in range(8):
-        v = values[p + ((c & 1) + (c >> 1 & 1) * nodes + (c >> 2) * nodes * nodes) * wide]
-        if (v < 0.0) != negative:
-            return negative, np.inf
-        least = min(least, abs(v) if v == v else 0.0)
-    return negative, least
-
-
-@inlined
-def least_at_corners(values, nearest):
-    """f at the corner of each cube of a block where it is nearest to zero; infinite where signs differ.
-
-    ``values`` (2 NODES^3,) holds f at the nodes, then the greatest f at the corners of each cube; both arrays are laid
-    out by the cubes' first nodes. Where f is undefined it counts as zero.
-    """
-    last = NODES**3
-    for p in range(last):
-        nearest[p] = values[p] if values[p] == values[p] else 0.0
-        values[last + p] = nearest[p]
-    for axis in range(3):
-        step = NODES**axis
-        for p in range(last - step):
-            v, w = nearest[p], nearest[p + step]
-            nearest[p] = v if v < w else w
-            v, w = values[last + p], values[last + p + step]
-            values[last + p] = v if v > w else w
-    for p in range(last):
-        most = values[last + p]
-        nearest[p] = most if most < 0.0 else nearest[p] if nearest[p] >= 0.0 else np.inf
-
-
-@inlined
-def in_doubt(nearest, x0, y0, z0, wide, outer, inner):
-    """Whether of the cubes from (x0, y0, z0) on, ``wide`` along each axis, one with corners of one sign is not proved
-    by ``outer`` and ``inner``, as ``enough`` gives them.
-    """
-    some = False
-    for row in range(wide * wide):
-        p = ((z0 + row // wide) * NODES + y0 + row % wide) * NODES + x0
-        for x in range(wide):
-            some |= -inner <= nearest[p + x] <= outer
-    return some
-
-
-@inlined
 def told_by_nodes(values, nodes, h, negative, steep, bent):
     """(whether f has the other sign at one of the ``nodes`` nodes along each axis of a cube, whether it is proved not
     to have it anywhere), by ``enough`` for the cubes of side ``h`` between the nodes.
@@ -286,6 +235,9 @@ def look_into(
     """
     h = grid[3]
     outer = inner = UNKNOWN
+    slopes = second[0]
+    for column in range(6):
+        slopes[column] = np.inf if column & 1 else -np.inf
     if verdict(code2, constants, parts2, scratch, grid, i, j, k, BLOCK) == CUT:
         decides = deciding(code2, scratch) + 1
         if decides < code2.shape[0]:
@@ -293,7 +245,14 @@ def look_into(
             sample(code2, constants, parts2, registers, short, points, grid, i, j, k, values)
         steep, upward, downward = steep_and_bent(code2, constants, parts2, scratch, second)
         outer, inner = enough(steep, upward, h), enough(steep, downward, h)
+        if steep < UNKNOWN:
+            for column in range(6):
+                slopes[column] = scratch[code2.shape[0] - 1, 2 + column]
     least_at_corners(values, nearest)
+    count = slipped(
+        code, constants, parts, scratch, code2, parts2, values, nearest, slopes, grid, outer, inner, i, j, k, eighths,
+        cells, rest, seen, count,
+    )  # fmt: skip
     if not in_doubt(nearest, 0, 0, 0, BLOCK, outer, inner):
         return count
     far, deep, code3 = outer, inner, code2
@@ -366,7 +325,8 @@ def hidden(
     code, constants, parts, scratch, short, near, registers, points, values, nearest, stack, second, grid, blocks,
     eighths, deepest, finer, cells, rest, seen,
 ):  # fmt: skip
-    """Find the cubes of some blocks with corners of one sign, but no proof for their inside; returns their number.
+    """Find the cubes of some blocks with corners of one sign, but no proof for their inside, and those ``slipped``;
+    returns their number.
 
     Of block b those are looked at whose eighth, from 0 along x, y and z to 7, is a bit of ``eighths[b]``.
     A thin bulge of what a neighbor shows needs none. Cubes are halved up to ``deepest`` times. Their places go into

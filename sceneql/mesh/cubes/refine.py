@@ -39,6 +39,12 @@ MANY_GROUPS = 2**12
 MOST_BENT = 2**18
 """Most triangles of the fine cells in which normals vary by too much: beyond it, and beyond 4 times the coarse
 triangles, the surface is left to shorter cells that are asked for."""
+MOST_TWICE = 2**18
+"""Most triangles of the mesh whose cells are cut by FINEST since the surface passes fine ones twice along an edge."""
+FEW_TWICE = 2.0**-9
+"""Share of the triangles up to which such cells are left as they are: where surface touches itself in points, cells of
+any size pass it twice.
+"""
 COARSER, FINE, FINEST = 2, 4, 8
 """Factors of subdivision along a cell's side: where FINE would make too many triangles, the usual one, and one for a
 tolerance that FINE would miss."""
@@ -66,8 +72,9 @@ def refined(
     unresolved cells.
 
     Subdivided are cells in which the normals vary by more than 60 degrees, or by TURN, within MOST_BENT triangles, and
-    cells with corners of one sign in which f has the other; with a ``tolerance`` [m] also cells with triangles farther
-    from the surface, unless these are more than FEW. No cell is subdivided if their groups are more than MOST_GROUPS.
+    cells in which f has the other sign between corners of one sign; with a ``tolerance`` [m] also cells with triangles
+    farther from the surface, unless these are more than FEW. They are cut by FINEST where the surface is seen to pass
+    between corners of fine cells, within MOST_TWICE triangles. No cell is cut if groups are more than MOST_GROUPS.
     The mesh is a closed 2-manifold; its bytes do not depend on the number of threads. Raises ValueError as
     ``grid_around``.
     """
@@ -79,13 +86,37 @@ def refined(
     found, (where, volumes, seen) = shop.looked_into(blocks, 1, FINE)
     coarse, doubt = Level(shop, found, len(blocks)), Unresolved(where, volumes, grid, seen)
     for cells, parts, most in _to_cut(whole, coarse, grid.cell, tolerance):
-        group = BLOCK // parts  # coarse cells along a group, which is one block of the fine grid
-        groups = _distinct(np.concatenate([cells, doubt.where[doubt.seen]]) // group, numbers)
+        asked = np.concatenate([cells, doubt.where[doubt.seen]])
+        groups = _groups(asked, parts, numbers)
         if len(groups) > (MANY_GROUPS if parts == FINEST else MOST_GROUPS) or not len(groups):
             continue
+        group = BLOCK // parts
         if parts**2 * among(numbers.of(coarse.cells // group), np.sort(numbers.of(groups))).sum() <= most:
             break
-    fine_shop = GridExtraction(whole, Grid(grid.low, grid.cell / parts, grid.blocks * parts))
+    made, left = _cut(shop, coarse, doubt, groups, parts)
+    few, twice = FEW_TWICE * len(made.triangles), (FINEST / parts) ** 2 * len(made.triangles)
+    if tolerance is None and left.seen.sum() > few and len(groups) <= MOST_GROUPS and twice <= MOST_TWICE:
+        finest = _groups(asked, FINEST, numbers)
+        if parts < FINEST and len(finest) <= MANY_GROUPS:
+            made, left = _cut(shop, coarse, doubt, finest, FINEST)
+    return unfolded(whole, made), left
+
+
+def _groups(cells: Keys, parts: int, numbers: Numbering) -> Keys:
+    """(g, 3) the groups of coarse cells, each one block of a grid ``parts`` times finer, that hold some cells."""
+    return _distinct(cells // (BLOCK // parts), numbers)
+
+
+def _cut(
+    shop: GridExtraction, coarse: Level, doubt: Unresolved, groups: Keys, parts: int
+) -> tuple[Polygons, Unresolved]:
+    """The mesh with the cells of the ``groups`` cut by ``parts``, and of those around as far as the curves on their
+    faces ask for it, and what stays unresolved.
+    """
+    import numpy as np
+
+    group, grid, numbers = BLOCK // parts, shop.grid, Numbering(shop.grid)
+    fine_shop = GridExtraction(shop.whole, Grid(grid.low, grid.cell / parts, grid.blocks * parts))
     made = Polygons(coarse.places, coarse.triangles, coarse.normals)
     while 0 < len(groups) <= MOST_GROUPS:
         chosen = np.sort(numbers.of(groups))
@@ -96,13 +127,13 @@ def refined(
         curves = border_curves(fine, parts, numbers, chosen, group)
         more = np.concatenate([_unmatched(sides, curves), _winding(fine, curves, grid.cell)])
         if not len(more):
-            made = stitched(whole, coarse, kept, fine, sides, curves)
+            made = stitched(shop.whole, coarse, kept, fine, sides, curves)
             break
         before = len(groups)
         groups = _distinct(np.concatenate([groups, more // group]), numbers)
         if len(groups) == before:
             break
-    return unfolded(whole, made), _left(fine_shop, groups, coarse, doubt, numbers)
+    return made, _left(fine_shop, groups, coarse, doubt, numbers)
 
 
 def _left(fine_shop: GridExtraction, groups: Keys, coarse: Level, doubt: Unresolved, numbers: Numbering) -> Unresolved:

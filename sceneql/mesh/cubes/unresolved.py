@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Unresolved:
-    """Cells whose corners have one sign, without a proof that f has this sign throughout."""
+    """Cells whose corners have one sign, without a proof that f has this sign throughout, and cells with an edge, or
+    more, that the surface passes twice.
+    """
 
     where: Ints
     """(n, 3) places of the cells, counted from the grid's first node."""

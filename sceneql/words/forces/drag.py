@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import model_validator
 
@@ -23,6 +23,8 @@ class Drag(Force):
     The linear part is that of a slow sphere, 6 pi eta r (Stokes 1851); the quadratic one that of a fast body,
     rho C A / 2 (Newton, Principia (1687), book II, proposition 33; Rayleigh 1876).
     """
+
+    needs_speed: ClassVar[bool] = True
 
     linear: Damping = field("Force for a speed.", "0 N*s/m", at_least=0)
     quadratic: Annotated[Value, Quantity(dim.MASS / dim.LENGTH)] = field(

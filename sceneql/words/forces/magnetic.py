@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from sceneql.bodies.charges import Charges, MagneticField, each
 from sceneql.island import static_rates
@@ -25,6 +25,8 @@ class Magnetic(Force):
     The field is uniform (``field``), or three formulas of x y z t in T (``formula``). In a uniform field charges run
     round at the angular frequency q B / m.
     """
+
+    needs_speed: ClassVar[bool] = True
 
     charge: Charges = field("Charge of every mass, or a list with one for each.")
     field_: MagneticField | None = field("The same field everywhere; it may vary in time.", None)

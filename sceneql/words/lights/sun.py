@@ -33,6 +33,10 @@ class Sun(Light):
 
     def doubts(self) -> Iterator[Doubt]:
         """A direction that points down, as from the sun to the scene."""
+        if self.direction is None and self.elevation.constant and (low := math.sin(self.elevation.number())) < -STEEP:
+            text = f"it shines from below: its `elevation` is {math.degrees(math.asin(low)):.3g} deg"
+            up = f"{-math.degrees(math.asin(low)):.3g}"
+            yield Doubt("light-from-below", text, self.elevation.span, f"write `elevation: {up} deg`")
         if self.direction is None or not self.direction.constant:
             return
         x, y, z = (float(c) for c in self.direction.number())
