@@ -36,8 +36,8 @@ clock: {end: 0.1 s}
 BURNER = """
 models:
   heat:
-    diffusion: {size: 1 1 m, cell: 1/24 m, of: temperature, coefficient: 0.02 m^2/s, initial: 300, boundary: {rest: {value: 300}},
-      source: "where(hypot(x - 0.5, y - 0.2) < 0.1, 200, 0)"}
+    diffusion: {size: 1 1 m, cell: 1/24 m, of: temperature, coefficient: 0.02 m^2/s, initial: 300,
+      boundary: {rest: {value: 300}}, source: "where(hypot(x - 0.5, y - 0.2) < 0.1, 200, 0)"}
 clock: {end: 1 s}
 """
 TINTED = """
