@@ -139,8 +139,8 @@ def places(text, told, snippet):
         around = [*around, (root, field)]
     names = re.findall(r"'([^']+)'", told.message) if " has no field" in told.message else []
     for owner, key in around:
-        if key == field:
-            yield put(text, owner, key, snippet)
+        if key == field:  # what stands beside it and is no field is left out
+            yield put(text, owner, key, snippet, [one for one in names if one in owner.entries and one != key])
     for owner, key in around:
         if owner.keys[key].start == told.span.start or key in names:
             drop = [one for one in names if one in owner.entries and one != key]
