@@ -236,8 +236,10 @@ def _measured(name: str, node: Mapping) -> str | None:
     text = node.entries[name].span.text
     of = node.entries.get("of")
     if of is not None and name in ("at", "time", "when") and re.fullmatch(r"[\w.]+", of.span.text):
-        return f"the instant stands in what is measured: write `of: at({of.span.text}, {text})`"
+        told = f'of: "at({of.span.text}, {text})"'
+        return f"the instant stands in what is measured: write `{told}`"
     if of is None and re.fullmatch(r"\w+\([\w., ]+\)|\w+(?:\.\w+)+", name) and "\n" not in text:
+        name = f'"{name}"' if "," in name else name
         return f"write `of: {name}, value: {text}, because: exact`, or another reason"
     return None
 
