@@ -11,7 +11,7 @@ objects: {ball: sphere}
 models:
   cage:
     mass_spring:
-      masses: {a: {position: 0 0 0 m, mass: 1 kg, fixed: yes}, b: {position: 1 0 0 m, mass: 1 kg}}
+      masses: {a: {mass: 1 kg, fixed: yes}, b: {position: 1 0 0 m, velocity: 1 0 0 m/s}}
       springs: {between: [a, b], stiffness: 1 kN/m}
 clock: {end: 3 s}
 solvers:

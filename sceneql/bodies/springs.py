@@ -57,11 +57,18 @@ def pin_problems(pins: Iterable[str] | Mapping[str, Pin], known: Sequence[str], 
             text = f"no mass is called '{pin}'; a pin is one of {', '.join(sorted(known))}, or a number"
             near = suggestion("_".join(re.findall(r"[a-z]+", pin.lower())).replace("upper", "top"), known)
             every = ", ".join(one for one in known if "_" in one) or ", ".join(known[-2:])
+            sided = [one for one in known if "corner" in pin.lower() and f"top_{_side(pin)}" == one]
+            near = f"did you mean '{sided[0]}'?" if sided else near
             near = f"a list stands in brackets: write `pins: [{pin}]`" if "," in pin else near
             near = near or (f"write `pins: [{every}]`, or some of them" if len(known) > 1 else None)
             yield Problem(text, place(pin), at_key=True, help=near)
         elif pin not in known and count is not None and float(pin) >= count:
             yield Problem(f"pin {pin}: the {count} masses are counted from 0", place(pin), at_key=True)
+
+
+def _side(pin: str) -> str:
+    """The side that stands in a name of other programs, ``corner_left``; empty for none."""
+    return next((side for side in ("left", "right") if side in pin.lower()), "")
 
 
 class SpringModel(Model):

@@ -18,6 +18,7 @@ from sceneql.quantities.bind import SECONDS, Lookup, bind
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, suggestion
 from sceneql.quantities.dimension import ANGLE, LENGTH, PERCENTAGE, PLAIN, TEMPERATURE, VOLUME, Dimension
 from sceneql.quantities.expression import Expr, Link, Name, Number, Symbol, Type, Vector, walk
+from sceneql.quantities.instead import instead
 from sceneql.quantities.operations import CONSTANTS
 from sceneql.quantities.parser import parse_expression
 from sceneql.quantities.span import Span
@@ -89,9 +90,8 @@ def read_formula(
             here = f"free here are {', '.join(sorted(free))}; other names stand under `define`, `{parts[0]}: 1`"
             rate = _RATE_OF.fullmatch(parts[0])
             prime = "" if rate is None else f"{rate[1] or rate[2]}'"
-            help = (
-                f"did you mean `{prime}`?" if prime in free else suggestion(parts[0], [*free, *names.defines]) or here
-            )
+            help = f"did you mean `{prime}`?" if prime in free else suggestion(parts[0], [*free, *names.defines])
+            help = _of_place(parts[0], free) or help or instead("function", parts[0]) or here
             if parts[0] == "time" and "t" in free:
                 help = SECONDS
             return Diagnostic("unknown-name", f"nothing is called '{parts[0]}'", span, help)
@@ -145,6 +145,17 @@ def _without_units(parsed: Expr, node: Scalar, free: set[str], lookup: Lookup, f
     names = sorted(symbols)
     these = f"`{names[0]}` is a plain number" if len(names) == 1 else f"`{'`, `'.join(names)}` are plain numbers"
     return f"{these} here: write all others without units too, `{' '.join(text.split())}`"
+
+
+def _of_place(name: str, free: set[str]) -> str | None:
+    """The help for the place as a vector, ``p``, or its distance from the origin, ``r``, where x and y are free."""
+    axes = [one for one in "xyz" if one in free]
+    if len(axes) < 2:
+        return None
+    if name in ("p", "pos", "position", "point", "P"):
+        return f"the place is `[{', '.join(axes)}]`: write that for `{name}`"
+    far = f"sqrt({' + '.join(f'{one}^2' for one in axes)})"
+    return f"the distance from the origin is written `{far}`" if name in ("r", "rho", "R") else None
 
 
 def _around_place(node: Node, wanted: Dimension | None, what: str, names: Names) -> str:

@@ -16,6 +16,12 @@ from sceneql.quantities.dimension import TIME
 from sceneql.quantities.expression import Call, Expr, Key, Keys, Symbol, Type
 from sceneql.quantities.instead import instead
 
+_CURVES = (
+    (("bezier", "spline", "hermite", "elastic", "back"), "cubic"),
+    (("constant", "hold", "discrete"), "step"),
+    (("ease", "sine", "quad", "smooth", "inout"), "smooth"),
+)
+"""Parts of names of curves in other programs, and what is nearest here."""
 CURVES = ("step", "linear", "smooth", "cubic")
 KEY_FIELDS = ("value", "slope", "slope_in", "slope_out")
 
@@ -35,7 +41,7 @@ def read_keys(
     ok = True
     for key in node.entries:
         if key not in ("keys", "curve", "cycle", "delay"):
-            hint = instead("keys", key)
+            hint = _curve_meant(key, node.entries[key]) or instead("keys", key)
             table = node.entries["keys"]
             if hint is not None and isinstance(table, MappingNode) and table.entries:  # as long as the keys last
                 hint = hint.replace("`cycle: 2 s`", f"`cycle: {[*table.entries][-1]}`")
@@ -78,7 +84,8 @@ def read_keys(
             continue
         now = at.number()
         if now <= last:
-            found.error("keys-order", "the times of keys must increase", table.keys[name].span)
+            help = _in_order(table, time) if last > -math.inf else None
+            found.error("keys-order", "the times of keys must increase", table.keys[name].span, help=help)
             ok = False
         last = now
         both = slopes.get("slope")
@@ -98,6 +105,17 @@ def read_keys(
     return Keys(argument, tuple(keys), curve, None if cycle is None else cycle.expr, type_, node.span)
 
 
+def _in_order(table: MappingNode, time: ReadTime) -> str | None:
+    """The help with the keys in the order of their times; None where two stand at one time, or a time is not known."""
+    ats = [(time(key, ""), key.text, table.entries[name].span.text) for name, key in table.keys.items()]
+    numbers = [at.number() for at, _, _ in ats if at is not None and at.constant]
+    texts = [text for _, _, text in ats]
+    if len({*numbers}) < len(ats) or any("\n" in text for text in texts):
+        return "two keys stand at one time: leave one of them out, or write a time between" if numbers else None
+    told = sorted(zip(numbers, ats, strict=True), key=lambda one: one[0])
+    return f"write `{{{', '.join(f'{name}: {text}' for _, (_, name, text) in told)}}}`"
+
+
 def _key_meant(second: int, item: Node) -> str:
     """A key of a list as a script writes it; ``{time: 1 s, value: 2 m}`` and a pair have their time."""
     match item:
@@ -106,6 +124,16 @@ def _key_meant(second: int, item: Node) -> str:
         case SequenceNode(items=[at, value]):
             return f"{at.span.text}: {value.span.text}"
     return f"{second} s: {item.span.text}"
+
+
+def _curve_meant(key: str, node: Node) -> str | None:
+    """The help for a curve by another program's name of it, ``easing: easeInOutQuad``."""
+    text = node.text.lower() if isinstance(node, Scalar) else ""
+    if key not in ("interpolation", "ease", "easing", "mode", "type", "timing"):
+        return None
+    plain = next((one for one in ("linear", "step", "cubic") if one in text), "")
+    curve = plain or next((ours for words, ours in _CURVES if any(one in text for one in words)), "")
+    return f"write `curve: {curve}`" if curve else None
 
 
 def _curve(node: MappingNode, found: Diagnostics) -> Any:

@@ -307,7 +307,10 @@ class Tie(Interaction):
         "`world`."
     )
     breaks: Annotated[float, Quantity(FORCE)] | None = field(
-        "Force above which it is gone, at the end of a step of at most 1/240 s; by default never.", None, above=0
+        "Force above which it is gone: at that instant where a tolerance chooses the steps and nothing collides, else "
+        "at the end of a step of at most 1/240 s; by default never.",
+        None,
+        above=0,
     )
 
     def problems(self) -> Iterable[Problem]:

@@ -247,6 +247,9 @@ def march(
     alone = counts[LOCAL] == 0 and counts[ACTS] == 0
     # Where nothing asks for the rate before a step's end is settled, it is evaluated once, after that.
     later = alone and leaving.size == 0 and counts[SETTLES] > 0 and counts[LAST_STAGE] < 0
+    # Whether a step may be taken back for what acts after it: not where contacts have changed more than the state.
+    free = counts[LOCAL] == 0 and leaving.size == 0
+    revocable = free
     while clock[T1] < target:
         if counts[LEFT] <= 0:
             return PAUSED
@@ -342,7 +345,18 @@ def march(
         if counts[LOCAL] > 0 or counts[ACTS] > 0 or counts[SETTLES] > 0:
             copy(y1, sample)
         if counts[ACTS] > 0:
+            floats[channels.EARLIER] = 1.0 if revocable and counts[ADAPTIVE] > 0 else 0.0
             counts[ALTERED] = after_step(t0, t1, y0, rate0, y1, floats, ints)
+            asked = floats[channels.EARLIER]
+            floats[channels.EARLIER] = 0.0
+            # What asks once others have changed something is not heard, nor in the next step, so that it goes on.
+            revocable = free and (counts[ALTERED] == 0 or not 0.0 < asked < 1.0)
+            if counts[ALTERED] == 0 and 0.0 < asked < 1.0:
+                copy(y0, y1)
+                copy(rate0, rate1)
+                counts[REJECTED] += 1
+                clock[STEP] = asked * (t1 - t0)
+                continue
             unknown = counts[LAST_STAGE] < 0 and leaving.size == 0
             if counts[LOCAL] == 0 and (counts[ALTERED] > 0 or unknown):
                 rate(t1, y1, rate1, floats, ints)

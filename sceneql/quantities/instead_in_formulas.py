@@ -209,6 +209,32 @@ OF_FORMULAS = (
 """(what the words were taken for, the words, the sentence)."""
 
 OF_NAMED = (
+    (
+        "field.emit",
+        "size diameter width scale",
+        "they have one size, beside `emit`: half of it is their `radius: 1 cm`",
+    ),
+    (
+        "field.hinge",
+        "motor_speed motorspeed target_velocity",
+        "a motor has the speed: write `motor: {torque: 10 N*m, speed: 3 rad/s}`",
+    ),
+    (
+        "field.perspective field.orthographic field.turntable",
+        "aspect aspect_ratio ratio width height resolution",
+        "the picture has it: leave it out here, and write `outputs: {film: {video: {size: 1280 720}}}`",
+    ),
+    (
+        "field.flow",
+        "re reynolds reynolds_number",
+        "a flow has its viscosity, density times speed times length over the Reynolds number: of 100, at 1 m/s and 1 m,"
+        " `viscosity: 1000 kg/m^3*1 m/s*1 m/100`",
+    ),
+    (
+        "field.flow",
+        "lid_velocity lidvelocity lid top_velocity wall_velocity",
+        'a lid is a wall that moves: write `boundary: {top: {wall: {velocity: "[1, 0]"}}}`',
+    ),
     ("cameras", "isometric iso axonometric", "write `{orthographic: {look_along: -1 -0.8 -1}}`"),
     (
         "cameras",

@@ -139,7 +139,8 @@ OF_PARTS = (
     (
         "field.models",
         "count number amount",
-        "many fill an object or are born, `fill: {object: NAME, count: 100}` or `emit: {rate: 100 /s}`",
+        "many fill an object or are born: write `fill: {object: {sphere: {radius: 0.5 m, hidden: yes}}, count: 100}`,"
+        " or `emit: {rate: 100 /s}`",
     ),
     (
         "field.models",
@@ -341,9 +342,14 @@ OF_PARTS = (
     ("body", "wall ground static base ceiling earth fixed none null", "what stands still is `world`"),
     ("body", "floor", "a body is of a model; what stands still is `world`"),
     (
-        "forces contacts",
+        "forces",
         "floor ground wall terrain",
         "masses hit the floor, and all objects, by `collision`: `forces: [gravity, collision]`",
+    ),
+    (
+        "contacts",
+        "floor ground wall terrain",
+        "masses hit the floor, and all objects, by `collision`: write `contacts: [collision]`",
     ),
     (
         "objects",

@@ -30,6 +30,8 @@ _ANGLED = re.compile(r"(?:rgb\w*\s*)?<([^<>{}\[\]\n]*)>")
 EXACT = 40
 """Largest number of digits of a literal that is converted exactly and rounded once: 1.7 mm is the double nearest to
 0.0017."""
+_CROSSED = re.compile(rf"{NUMBER}\s*[a-zµ]*(?:\s*[x×]\s*{NUMBER}\s*[a-zµ]*)+")
+LONGEST_CROSSED = 200
 
 
 def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[Unit | None, int]:
@@ -186,3 +188,10 @@ def with_points(text: str, span: Span) -> str | None:
         return points.strip() if points != text and whole_value(points, span) is not None else None
     except ScriptError:
         return None
+
+
+def crossed(text: str) -> str | None:
+    """The help for sizes with crosses between them, ``1 x 2 x 3 m``."""
+    crossed = len(text) <= LONGEST_CROSSED and _CROSSED.fullmatch(text.strip()) is not None
+    sides = vector_meant(re.sub(r"\s*[x×]\s*", ", ", text.strip())) if crossed else None
+    return f"write `{sides}`" if sides else None

@@ -13,6 +13,7 @@ from sceneql.quantities.literal import (
     NUMBER,
     WORD,
     comma_meant,
+    crossed,
     in_brackets,
     quantity,
     read_unit,
@@ -35,6 +36,7 @@ from sceneql.quantities.spaced import (
     typed_plainly,
     vector_called,
     without_dots,
+    without_lambda,
     written_out,
 )
 from sceneql.quantities.span import Span
@@ -59,7 +61,6 @@ TOKEN = re.compile(
 
 _PARENTHESES = re.compile(r"\(([^()]*,[^()]*,[^()]*)\)\s*([^\W\d]\S*)?")
 _UNIT_IN_BRACKETS = re.compile(r"\[\s*([^\W\d][^\[\],]*?)\s*\]")
-_CROSSED = re.compile(rf"{NUMBER}\s*[a-zµ]*(?:\s*[x×]\s*{NUMBER}\s*[a-zµ]*)+")
 
 
 def parse_value(text: str, span: Span) -> Expr:
@@ -69,8 +70,10 @@ def parse_value(text: str, span: Span) -> Expr:
         return parse_expression(text, span) if value is None else value
     except ScriptError as error:
         (found,) = error.diagnostics
-        if found.code == "unknown-unit" and (sides := _crossed(text)) is not None:
+        if found.code == "unknown-unit" and (sides := crossed(text)) is not None:
             raise ScriptError([Diagnostic("syntax", "sizes have no 'x' between them", found.span, sides)]) from None
+        if (chosen := ternary(text)) is not None and found.code == "unknown-unit":
+            raise ScriptError([replace(found, help=f"write `{chosen}`")]) from None
         if (ends := two_ends(text)) is not None:
             help = f"two ends stand side by side, with one unit: write `{ends}`"
             raise ScriptError([replace(found, help=help)]) from None
@@ -84,19 +87,18 @@ def parse_value(text: str, span: Span) -> Expr:
         raise ScriptError([Diagnostic("syntax", "two values stand side by side", found.span, help)]) from None
 
 
-def _crossed(text: str) -> str | None:
-    """The help for sizes with crosses between them, ``1 x 2 x 3 m``."""
-    crossed = len(text) <= LONGEST and _CROSSED.fullmatch(text.strip()) is not None
-    sides = vector_meant(re.sub(r"\s*[x×]\s*", ", ", text.strip())) if crossed else None
-    return f"write `{sides}`" if sides else None
-
-
 def parse_expression(text: str, span: Span) -> Expr:
     """An expression. Raises ScriptError with one diagnostic at the very characters; ``text`` stands at ``span``."""
     if len(text) > LONGEST:
         message = f"an expression has at most {LONGEST} characters, not {len(text)}"
         raise ScriptError([Diagnostic("expression-too-long", message, span, "give its parts names in `define`")])
-    return _Parser(text, span).whole()
+    try:
+        return _Parser(text, span).whole()
+    except ScriptError as error:
+        chosen = ternary(text) or without_lambda(text)
+        if chosen is None or error.diagnostics[0].code not in ("syntax", "unknown-unit"):
+            raise
+        raise ScriptError([replace(error.diagnostics[0], help=f"write `{chosen}`")]) from None
 
 
 class _Parser:
@@ -321,7 +323,7 @@ class _Parser:
             plain = typed_plainly(self.text) if odd in _WRITTEN else None
             help = instead("sign", odd) if plain is None else f"write `{plain}`"
             return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
-        if (sides := _crossed(self.text) or (written_out(self.text) if self.token == "for" else None)) is not None:
+        if (sides := crossed(self.text) or (written_out(self.text) if self.token == "for" else None)) is not None:
             help = sides
         elif (vector := vector_called(self.text) or per_unit(self.text) or ternary(self.text)) is not None:
             help = f"write `{vector}`"

@@ -39,6 +39,9 @@ _CHOICE = re.compile(r"([^?:]+)\?([^?:]+):([^?:]+)")
 _IF_ELSE = re.compile(r"(.+?)\s+if\s+(.+?)\s+else\s+(.+)")
 _RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _TERM = r"(\d[\d.]*\s+[a-zA-Z]+(?![\w(])|[\w.]+|\([^()]*\))"
+_LAMBDA = re.compile(
+    r"\s*(?:lambda\s+[\w, ]*:|\(?[\w, ]*\)?\s*=>|function\s*\([\w, ]*\)\s*\{?\s*return)\s*(.+?)[;}\s]*"
+)
 _REST, _QUOTIENT = re.compile(rf"{_TERM}\s*%\s*{_TERM}"), re.compile(rf"{_TERM}\s*//\s*{_TERM}")
 _PER = re.compile(r"\s+per\s+(sec(?:ond)?s?|s|min(?:ute)?s?|hours?|h|m|meters?|metres?)\b")
 _UNITS_BELOW = {"sec": "s", "min": "min", "hou": "h", "met": "m"}
@@ -253,6 +256,14 @@ def typed_plainly(text: str) -> str | None:
     raised = re.sub(r"[⁻¹²³⁰⁴-⁹]+", lambda one: "^" + one[0].translate(_RAISED), text.strip())
     plain = re.sub(r"\s*[×·⋅]\s*", "*", raised).replace("−", "-")
     return plain if plain.isascii() else None
+
+
+def without_lambda(text: str) -> str | None:
+    """The formula of a function without a name, ``lambda x, y: x^2``, ``(x) => x^2``; None of other texts."""
+    found = re.fullmatch(
+        r"\s*(?:lambda\s+[\w, ]*:|\(?[\w, ]*\)?\s*=>|function\s*\([\w, ]*\)\s*\{?\s*return)\s*(.+?)[;}\s]*", text
+    )
+    return None if found is None else found[1]
 
 
 def modulo(text: str) -> str | None:

@@ -21,8 +21,9 @@ Only this file says where they are.
     STATIC,
     KEEPS,
     FIXED,
+    EARLIER,
     HEAD,
-) = range(16)
+) = range(17)
 """RATES: number of evaluations of the rate so far.
 
 STEP_END: above 0, the planned end [s] of the step, which local contacts may only lower in this call; 0 where they
@@ -64,7 +65,10 @@ time.
 KEEPS: not 0 where the entries of terms that have positive slopes, as strain does, stay in the Jacobian as they were
 evaluated last: within a stage they change by far less than those of contacts.
 
-FIXED: not 0 where no tolerance chooses the steps: exact contacts then look closer at the energy that a step makes."""
+FIXED: not 0 where no tolerance chooses the steps: exact contacts then look closer at the energy that a step makes.
+
+EARLIER: above 0 while kernels that act after a step may ask for a shorter one: a part of the step, which they may only
+lower in this call, changing nothing else. The step is then taken back and tried as long as that."""
 
 NO_SLOPES, OUTSIDE, BETWEEN = 0.0, -1.0, -2.0
 """Values of STAGE, for contacts. NO_SLOPES: they act between steps, and no solver needs slopes. OUTSIDE: they act

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any
 
 from sceneql import kinds
 from sceneql.bodies.rigid.mass_properties import impossible
@@ -43,10 +43,6 @@ class Made:
 
 class Body(Record):
     """A rigid body: an object with an inside whose matter is spread evenly, or a mass with an inertia of its own."""
-
-    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("angular_velocity", "omega"), "write `spin: 0 10 0 rpm`, the angular velocity at the start"
-    )
 
     of: kinds.ObjectRef | None = field(
         "The object that is the body, and that it drives; without one it has `mass` and `inertia`.", None

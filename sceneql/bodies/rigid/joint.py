@@ -93,7 +93,7 @@ class Joint(Tie):
         assembly.remember(scratch, len(rows), holds, arm, *integers(first.mover), *integers(second.mover))
         assembly.remember(*motion)
         if self.breaks is not None:
-            ints = (scratch, len(rows), holds, assembly.floats([self.breaks]), *motion)
+            ints = (scratch, len(rows), holds, assembly.floats([self.breaks, -1.0, 0.0]), *motion)
             assembly.after_step("sceneql.bodies.rigid.break_kernels:part", ints)
             assembly.step_at_most(OFTEN)  # what rests under a growing load would be taken over its break in one step
 

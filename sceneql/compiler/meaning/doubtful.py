@@ -8,6 +8,7 @@ from sceneql.compiler.meaning import (
     after_end,
     alike_variants,
     at_rest,
+    buried_source,
     elementary,
     enclosed,
     few_frames,
@@ -17,6 +18,7 @@ from sceneql.compiler.meaning import (
     lighting,
     maps,
     missed,
+    one_spring,
     slack,
     solid_parts,
     still_fields,
@@ -34,6 +36,7 @@ from sceneql.graph import Task
 from sceneql.quantities.diagnostic import Diagnostics
 
 ALL = (
+    buried_source,
     solid_parts,
     fixed_points,
     few_frames,
@@ -53,6 +56,7 @@ ALL = (
     lighting,
     maps,
     missed,
+    one_spring,
     slack,
     still_fields,
     still_flows,

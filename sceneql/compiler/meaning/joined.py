@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from itertools import combinations
+from math import hypot
 from typing import Any
 
 from sceneql.compiler.meaning.facts import Facts, constant
 from sceneql.compiler.meaning.places import Ball, ball, distance, text
 from sceneql.graph import Task
-from sceneql.kinds import Object
+from sceneql.kinds import Camera, Object
 from sceneql.quantities.diagnostic import Diagnostics
 
 MOST = 64
@@ -50,7 +51,7 @@ def _solids(facts: Facts, task: Task, held: dict[str, Ball], used: set[str], fou
                 told = f"nothing is left of '{task.name}': '{first}' lies inside of '{name}', which is cut from it"
                 help = f"the first is what is cut: write `of: [{name}, {first}]`, or a smaller '{name}'"
                 found.warning("cuts-nothing", told, task.span, help=help)
-            elif facts.whole and whole.inner > gap + cut.reach and _shown(facts, task, used) and not others[1:]:
+            elif facts.whole and whole.inner > gap + cut.reach and _shown(facts, task, whole, used) and not others[1:]:
                 told = f"'{name}' cuts a hollow inside of '{first}', which is never seen"
                 help = f"let it reach through the surface, or write `material: glass` in '{task.name}'"
                 found.warning("cuts-nothing", told, facts.tasks[name].span or task.span, help=help)
@@ -66,8 +67,12 @@ def _solids(facts: Facts, task: Task, held: dict[str, Ball], used: set[str], fou
         found.warning("cuts-nothing", told, kind.blend.span or task.span, help=help)
 
 
-def _shown(facts: Facts, task: Task, used: set[str]) -> bool:
-    """Whether an object is shown alone and opaque: no model weighs it, no other object is made of it."""
+def _shown(facts: Facts, task: Task, whole: Ball, used: set[str]) -> bool:
+    """Whether an object is shown alone and opaque, from outside: no model weighs it, no other object is made of it."""
+    eyes = [constant(getattr(one.kind, "position", None)) for one in facts.of(Camera) if one.span is not None]
+    place = constant(getattr(task.kind, "position", None)) or (0.0, 0.0, 0.0)
+    if any(eye is None or distance(eye, place) < whole.reach + hypot(*whole.center) for eye in eyes):
+        return False
     alone = task.name in facts.seen and task.name not in facts.members and task.name not in used
     return alone and task.original is None and not facts.clear(task.kind)
 

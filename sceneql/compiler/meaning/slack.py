@@ -15,7 +15,7 @@ from sceneql.quantities.diagnostic import Diagnostics
 SHORT, LONG = 5.0, 20.0
 """Ratio of a spring's rest length to that at the start, and the other way round, from which on it is most likely wrong.
 """
-SAG = 5.0
+SAG = 20.0
 """Extents of a net by which a spring is lengthened by its weight, from which on it is too soft."""
 SEEN = 0.02
 """Strain of a curtain by its weight below which nothing is seen to move."""

@@ -74,13 +74,17 @@ def _field_alone(script: Script, catalogue: Catalogue, family: str, name: str, n
     """The help for a number that stands under the name of a field of a family's word, beside the word or without."""
     section = script.root.entries.get(family)
     beside = section.entries.values() if isinstance(section, Mapping) else ()
+    others = section.entries.items() if isinstance(section, Mapping) else ()
     words = [same_as(one.text, catalogue.choices(family)) or one.text for one in beside if isinstance(one, Scalar)]
     for word in [*words, *catalogue.choices(family)]:
         cls = catalogue.load(family, word)
         fields = [] if cls is None else [written_name(key) for key in cls.model_fields]
         field = name if name in fields else same_as(name, fields)
         if cls is not None and field is not None:
-            inner = f"{{{field}: {_unit(cls, field, node)}}}"
+            more = ((key, one) for key, one in others if isinstance(one, Scalar) and one.kind in ("number", "integer"))
+            ours = {key if key in fields else same_as(key, fields): one for key, one in more}
+            inner = ", ".join(f"{key}: {_unit(cls, key, one)}" for key, one in ours.items() if key is not None)
+            inner = f"{{{inner}}}"
             return f"a part has a name, and a word around its fields: write `main: {{{word}: {inner}}}`"
     return None
 

@@ -13,6 +13,7 @@ from sceneql.language.tree import Mapping, Node
 CAPSULES = ("capsule", "pill", "capsulegeometry")
 ELLIPSOIDS = ("ellipsoid", "egg", "spheroid")
 CONES = ("cone", "pyramid", "frustum", "conegeometry")
+LINES = ("line", "polyline", "segment", "linesegments", "rod", "stick", "beam", "edge")
 EMITTERS = (
     "popnet", "pop", "emitter", "particle_system", "particlesystem", "particle_emitter", "dust", "sparks", "sparkles",
     "snow", "rain", "fireworks",
@@ -45,6 +46,8 @@ def other_word(word: str, family: str, fields: Node | None) -> str | None:
         return _capsule(given)
     if family == "objects" and named in ELLIPSOIDS:
         return _ellipsoid(given)
+    if family == "objects" and named in LINES:
+        return _line(given)
     if family == "objects" and named in CONES:
         return _cone(given)
     return _emitter(given) if family == "models" and named in EMITTERS else None
@@ -101,6 +104,18 @@ def _capsule(given: Naming[str, Node]) -> str:
     ends = ", ".join(f"{x:g} {0.0 + y + side:.6g} {z:g} {unit}" for side in (-half, half))
     told = f"{{tube: {{through: [{ends}], radius: {radius[0][0]:g} {unit}{_looks(given)}}}}}"
     return f"a capsule is a tube of two points: write `{told}`; a model moves it in a group"
+
+
+def _line(given: Naming[str, Node]) -> str | None:
+    """A line from place to place, or through several, as a tube."""
+    both = [_text(given, names) for names in (("from", "start", "p1", "a"), ("to", "end", "p2", "b"))]
+    points = _text(given, ("points", "vertices", "path", "through"))
+    points = points or (f"[{', '.join(filter(None, both))}]" if all(both) else None)
+    if points is None or "\n" in points:
+        return None
+    radius = _text(given, ("radius", "r")) or "1 cm"
+    told = f"{{tube: {{through: {points}, radius: {radius}{_looks(given)}}}}}"
+    return f"a line is a thin tube: write `{told}`"
 
 
 def _ellipsoid(given: Naming[str, Node]) -> str:

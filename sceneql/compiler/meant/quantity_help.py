@@ -232,6 +232,8 @@ def by_corners(node: Node, field: str, length: int) -> str | None:
     """
     text = node.span.source.text[node.span.start : node.span.end]
     numbers = NUMBER.findall(text) if len(text) <= MOST else []
+    if len(numbers) == 1:
+        numbers = numbers * length
     if len(numbers) == length:
         halves = [abs(float(number)) / 2 for number in numbers]
         corners = [-half for half in halves], halves

@@ -113,6 +113,11 @@ def text_meant(node: Node, what: str) -> str | None:
     """The help for a list or a group of fields in place of a text."""
     if isinstance(node, Sequence) and what == "pins":
         return "a pin is a side or a corner, or the number of a mass: write `pins: [top_left, top_right]`"
+    if isinstance(node, Sequence) and what == "between":
+        place = f"[{', '.join(one.span.text for one in node.items)}]"
+        return (
+            f"a spring joins two masses: write `hook: {{position: {place}, fixed: yes}}` in `masses`, and here `hook`"
+        )
     return (
         f'write `{what}: "{node.span.text}"`' if isinstance(node, MappingNode) and "\n" not in node.span.text else None
     )

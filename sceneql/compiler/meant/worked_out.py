@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 from collections.abc import Sequence as Sequenced
 from math import atan, degrees, tau
@@ -35,6 +36,9 @@ WHIRLS = ("speed", "velocity", "rate", "strength", "angular_velocity", "omega")
 """Fields of other programs for how fast a vortex turns."""
 FACETS = ("$fn", "sides", "segments", "radialsegments", "radial_segments", "vertices")
 """Fields of other programs for how many sides a cylinder has."""
+HEIGHTS = ("z", "y", "height", "function", "formula", "f", "x")
+_COORDINATE = re.compile(r"\b[xyz]\b")
+"""Fields of other programs for a height by place."""
 FED = ("feed", "kill", "f", "k", "feed_rate", "kill_rate", "du", "dv")
 """Fields of other programs for the equations of Gray and Scott."""
 MODULI = {
@@ -61,6 +65,8 @@ def worked_out(name: str, unknown: Sequenced[str], node: Mapping, known: Collect
     told = told or _balls(name, node, known) or _pointing(name, unknown, node, known) or _colors(name, node, known)
     if told is None and name in FACETS and {"radius", "height"} <= {*known}:
         told = prism(node.entries, name)
+    if told is None and {"shows", "paint"} <= {*known} and name in HEIGHTS:
+        told = _height(node)
     if told is None and name.lower() in FED and "species" in known and "species" not in node.entries:
         told = _fed(node)
     told = told or _moduli(name, unknown, node, known)
@@ -206,6 +212,21 @@ def _moduli(name: str, unknown: Sequenced[str], node: Mapping, known: Collection
         return None
     scale, unit = next((one for one in PRESSURES if modulus >= one[0]), (1.0, "Pa"))
     return f"write `modulus: {modulus / scale:.4g} {unit}, poisson: {nu:.4g}`"
+
+
+def _height(node: Mapping) -> str | None:
+    """The help for a height as a formula of two coordinates, whose ends may be told, as an implicit surface."""
+    texts = {one: node.entries[one].span.text.strip("'\"") for one in HEIGHTS if one in node.entries}
+    name, formula = next(((one, text) for one, text in texts.items() if _COORDINATE.search(text)), ("", ""))
+    across = "y" if name == "z" or not re.search(r"\bz\b", formula) else "z"
+    formula = re.sub(r"(?<![\w.])y\b", "z", formula) if across == "y" else formula
+    ends = [in_si(node.entries[one].span.text) if one in node.entries else [] for one in ("x", across)]
+    if "\n" in formula or not _COORDINATE.search(formula):
+        return None
+    (left, right), (back, front) = (one if len(one) == 2 else [-3.0, 3.0] for one in ends)
+    box = f"[{left:g} -1 {back:g}, {right:g} 1 {front:g}]"
+    told = f'{{implicit: {{field: "y - ({formula})", bounds: {{box: {box}}}}}}}'
+    return f"a height above x and z is a formula: write `{told}`"
 
 
 def _fed(node: Mapping) -> str:
