@@ -33,6 +33,21 @@ variants:
   thick: {define: {k: 2 N*s/m}, forces: {weight: gravity, air: {drag: {linear: k}}}}
 clock: {end: 0.1 s}
 """
+BURNER = """
+models:
+  heat:
+    diffusion: {size: 1 1 m, cell: 1/24 m, of: temperature, coefficient: 0.02 m^2/s, initial: 300,
+      boundary: {rest: {value: 300}}, source: "where(hypot(x - 0.5, y - 0.2) < 0.1, 200, 0)"}
+clock: {end: 1 s}
+"""
+OVAL = """
+models:
+  air: {flow: {size: 3 3 m, cell: 3/32 m, density: 1 kg/m^3, viscosity: 0.1 Pa*s}}
+  balloon: {membrane: {of: egg, law: {springs: {stretch: 10 N/m}}, prestress: 2 N/m}}
+forces: [{immersion: {on: [balloon], in: air}}]
+objects: {egg: {implicit: {field: "x^2/0.75^2 + y^2/0.5^2 - 1", position: 1.5 1.5 0 m}}}
+clock: {end: 1 s}
+"""
 TINTED = """
 materials: {tinted: {glass: {color: 1 0.5 0.5}}}
 objects: {other: {sphere: {position: 3 0.5 0.5 m, material: tinted}}, blob: {sphere: {radius: 0.2 m, hidden: yes}}}
@@ -84,6 +99,8 @@ SCENES = {
     "a group of parts above its place": FALLING,
     "variants that leave a force out, and a name that nothing uses then": VARIED,
     "a plain material beside a tinted one": TINTED,
+    "heat that comes in at one place alone": BURNER,
+    "a flat skin of a formula without z": OVAL,
     "TeX with the number of a character": 'overlays: {a: {formula: {tex: "\\u03b1 = 1"}}}\nobjects: {ball: sphere}\n',
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tracemalloc
 
 import numpy as np
@@ -208,3 +209,26 @@ def test_a_run_of_a_solid_holds_little_beside_its_numbers_and_integers(tmp_path)
     tracemalloc.stop()
     system = run.islands[0].march.system
     assert held < 3.0 * (system.floats.nbytes + system.ints.nbytes)
+
+
+@pytest.mark.parametrize(
+    ("load", "exact"),
+    [
+        ("sin(2*t)", (math.sin(6) - 0.2 * math.sin(30)) / 96),
+        ("where((t > 1)*(t < 1.01), 1, 0)", (math.cos(10 * 1.99) - math.cos(10 * 2.0)) / 100),
+    ],
+)
+def test_loads_by_formulas_of_the_time_are_followed(tmp_path, load, exact):
+    """A mass on a spring, 10 rad/s, under a force by formula: it was taken as constant, and nothing moved."""
+    script = f"""
+clock: {{end: 3 s}}
+models:
+  net:
+    mass_spring:
+      masses: {{a: {{position: 0 0 0 m, fixed: yes}}, b: {{position: 1 0 0 m, mass: 1 kg}}}}
+      springs: [{{between: [a, b], stiffness: 100 N/m}}]
+forces: [{{force: {{components: ["{load}", "0", "0"]}}}}]
+solvers: {{main: modal}}
+"""
+    ((place,),) = watch(tmp_path, script, [3.0], "net.b.position")
+    assert place[0] - 1 == pytest.approx(exact, abs=1e-6)

@@ -286,6 +286,22 @@ def test_rounding_of_a_sheet_at_rest_is_no_energy_out_of_nothing(tmp_path):
     assert "energy-gained" not in {found.code for found in done.warnings}
 
 
+def test_energy_out_of_nothing_is_warned_of_beside_a_planet(tmp_path):
+    """A satellite by Euler's method: the planet's mass is no measure of what rounding is."""
+    script = """
+models:
+  sky:
+    particles:
+      list: {earth: {mass: 6e24 kg, fixed: yes}, sat: {mass: 1000 kg, position: 7000 0 0 km, velocity: 0 7.5 0 km/s}}
+forces: [mutual_gravity]
+solvers: {main: {euler: {step: 200 s}}}
+clock: {end: 20000 s, speed: 4000}
+outputs: {table: {record: {of: [sky.energy], every: 2000 s}}}
+"""
+    done = pipeline.render(loaded(tmp_path, script), folder=tmp_path)
+    assert [found.code for found in done.warnings] == ["energy-gained"]
+
+
 def test_energy_out_of_nothing_is_warned_of_where_one_picture_is_made_at_the_end(tmp_path):
     still = PENDULUM[: PENDULUM.index("outputs:")] + "outputs: {still: {image: {size: 32 32}}}\n"
     wild = pipeline.render(loaded(tmp_path, still, "define.dt=3 ms"), folder=tmp_path)

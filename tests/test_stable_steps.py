@@ -312,3 +312,11 @@ def test_a_solid_that_moves_bounds_the_step_of_the_flow_around_it(tmp_path):
     assert 2.5 / (100.0 / 0.1) < float(found[1]) * 1e-3 < 3.0 / (100.0 / 0.1)  # |v| dt/cell of rk4
     plan = text(explain(loaded(tmp_path, fast)))
     assert re.search(rf"after the start stable up to a step of {found[1]} ms, set by the solid 'cyl'", plan)
+
+
+def test_a_coefficient_that_varies_in_time_is_bounded_by_its_start(tmp_path):
+    """`check` and `explain` ended in a traceback."""
+    field = 'size: 1 1 m, cell: 0.1 m, coefficient: "0.01*(1 + t)", initial: x'
+    script = f"models: {{heat: {{diffusion: {{{field}}}}}}}\nsolvers: {{main: {{ftcs: {{step: 1 s}}}}}}\n"
+    (warning,) = loaded(tmp_path, script + "clock: {end: 2 s}\n").warnings
+    assert "0.25 s" in warning.message

@@ -71,7 +71,7 @@ def compile_script(
     checked = check(script, catalogue, found, parsed)
     check_studies(checked.settings.studies, script.root, catalogue, KEYS, found)
     report_circles(checked.tasks, found)
-    report_placeless(checked.tasks, found)
+    report_placeless(checked.tasks, checked.settings.expect, found)
     background = checked.settings.background is not None
     tasks = expand(checked.tasks, catalogue, without=checked.without, implied=checked.implied, background=background)
     report_hollow(tasks, found)

@@ -14,6 +14,7 @@ from sceneql.grids.probing import misnamed, outside
 from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Record, Symbols, field, quantity_type
 from sceneql.kinds.probed import Probed
 from sceneql.kinds.stable_step import StaticScene
+from sceneql.kinds.values import TIME
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
 from sceneql.quantities.dimension import Dimension
@@ -200,7 +201,8 @@ def largest_in(formula: Formula | None, corner: Sequence[float], size: Sequence[
     count, most = SAMPLES[len(size)], 0.0
     sides = [[low + side * k / count for k in range(count + 1)] for low, side in zip(corner, size, strict=True)]
     for place in product(*sides):
-        known = {Symbol(one): x for one, x in zip("xyzt", (*place, *[0.0] * (4 - len(place))), strict=True)}
+        known = {Symbol("x"): 0.0, Symbol("y"): 0.0, Symbol("z"): 0.0, **{Symbol(one): 0.0 for one in TIME}}
+        known |= {Symbol(axis): x for axis, x in zip("xyz", place, strict=False)}
         most = max(most, abs(float(evaluate(formula.expr, known))))
     return most
 

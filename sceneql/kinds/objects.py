@@ -135,10 +135,11 @@ class Object(Kind):
         """
         return ()
 
-    def cut_by_default(self) -> tuple[str, str]:
+    def cut_by_default(self, flat: bool = False) -> tuple[str, str]:
         """The default bounds, as text, that cut an unbounded object where the script gives none, and larger ones.
 
-        Empty where nothing is cut; the second also where none are known that hold all of it.
+        ``flat``: whether its section at z = 0 alone counts. Empty where nothing is cut; the second also where none are
+        known that hold all of it.
         """
         return "", ""
 

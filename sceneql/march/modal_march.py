@@ -9,6 +9,7 @@ import numpy as np
 
 from sceneql.compiled.pointers_kernels import addresses
 from sceneql.failure import LimitRefused, RunFailure
+from sceneql.island.breakpoint_table import next_breakpoint
 from sceneql.march.driver import jacobian
 from sceneql.march.march import March
 from sceneql.march.mode_loads import FIRST, Modes, Piece, next_piece
@@ -41,8 +42,8 @@ class ModalMarch(March):
             self._rest[at : at + len(values)] = values
         for at, _, count in system.masses:
             self._rest[at : at + 3 * count] = 0.0
-        varies = system.structure.varying
-        times = self.end * np.array(LOOKED_AT if varies else LOOKED_AT[:1])
+        self._varies = self._varying()
+        times = self.end * np.array(LOOKED_AT if self._varies else LOOKED_AT[:1])
         found = tangent(self, functions, self._rest, times)
         count = int(stepper.method.numbers[0])
         points = np.stack([self._rest[found.positions - found.axes + k] for k in range(3)], axis=1)
@@ -63,6 +64,13 @@ class ModalMarch(March):
             raise self._refusal("it counts what damping takes out of one model, and here are several")
         self._project()
         self.prepared_text = self._told()
+
+    def _varying(self) -> bool:
+        """Whether loads vary in time: by values, at breakpoints, or by formulas, which differ at some instants."""
+        if self.system.structure.varying or next_breakpoint(self.system.stops, 0.0, self.end) < self.end:
+            return True
+        first, *others = (self.rate(share * self.end, self._rest).copy() for share in LOOKED_AT)
+        return any((first != one).any() for one in others)
 
     def _refuse(self) -> None:
         """Raise LimitRefused for islands that are not masses moved by forces."""
@@ -100,7 +108,7 @@ class ModalMarch(March):
         self._time = 0.0
         self._uncounted: Floats | None = None
         forces = self._loads(0.0)
-        self._piece: Piece | None = None if system.structure.varying else Piece(0.0, self.end, forces[:, None])
+        self._piece: Piece | None = None if self._varies else Piece(0.0, self.end, forces[:, None])
         self._length = FIRST * self.end
         self._work = np.zeros(len(self._tallies))
         moving = found.mass @ start[found.velocities]

@@ -288,16 +288,18 @@ def _note(balance: Balance, moment: Instant) -> None:
 
 
 def _rounding(balance: Balance, moment: Instant) -> float:
-    """Energy of all masses at the speed with which they would go through UNSEEN of their extent in the film [J]."""
-    from sceneql.bodies.bodies import masses, positions
+    """Energy of moving masses, each as the lightest, that go through UNSEEN of their extent in the film [J]."""
+    from sceneql.bodies.bodies import moving_masses, positions
 
     total = 0.0
     for name in balance.models:
         state = moment.state(name)
         if state.bodies is not None and state.bodies.count:
+            moving = moving_masses(state.bodies, state)
+            moving = moving[moving > 0.0]
             extent = float(np.ptp(positions(state.bodies, state), axis=0).max())
             speed = UNSEEN * extent / max(balance.island.graph.settings.clock.end, 1e-300)
-            total += float(masses(state.bodies, state).sum()) * speed**2
+            total += 0.5 * len(moving) * float(moving.min()) * speed**2 if len(moving) else 0.0
     return total
 
 

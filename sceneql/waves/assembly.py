@@ -73,6 +73,8 @@ def add_wave(wave: Wave, boundary: Mapping[str, Part], ground: Ground, assembly:
     assembly.pair(spread.at, velocity_at, n + 1)
     assembly.alike(spread.at, n)
     assembly.alike(velocity_at, n)
+    for tally in (spread.at + n, velocity_at + n):  # of a mode between held edges they are the rounding of all others
+        assembly.alike(tally, 1)
     damping = _finite("damping", wave.damping, ground)
     for name, formula, values in (("speed", wave.speed, speeds), ("damping", wave.damping, damping)):
         if formula is not None and values.min() < 0.0:

@@ -8,11 +8,11 @@ from typing import Any
 
 from sceneql.kinds import Formula
 from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Symbol, walk
 
 FLAT, FINE, COARSE = 2, 12, 4
 """Number of sides of a flat box, and of steps along each side of it, and of a deep one, at which formulas are taken."""
-PLACES = ((0.31, 0.17, 0.59), (0.0, 0.0, 0.0), (17.3, 5.9, 3.1))
-"""Places at which a formula that does not depend on the place is the same."""
+PLACE = ("x", "y", "z")
 
 
 def value(formula: Formula, place: Sequence[float], time: float) -> Any:
@@ -53,11 +53,13 @@ def over(formula: Formula, ends: Sequence[tuple[float, float]], times: Sequence[
 
 
 def nothing(formula: Formula | None, end: float) -> bool:
-    """Whether a formula is certainly 0 up to a time: there is none, or one that is 0 whatever the place."""
+    """Whether a formula is certainly 0 up to a time: there is none, or one that is 0 and reads no place.
+
+    One that reads the place may be 0 nearly everywhere: `where(x < 0.1, 2, 0)`.
+    """
     if formula is None:
         return True
-    for time in (0.0, 0.37 * end, end):
-        values = [value(formula, place, time) for place in PLACES]
-        if values[0] is None or any(flat(values[0])) or any(other != values[0] for other in values):
-            return False
-    return True
+    if any(isinstance(node, Symbol) and node.name in PLACE for node in walk(formula.expr)):
+        return False
+    values = [value(formula, (), time) for time in (0.0, 0.37 * end, end)]
+    return not any(one is None or any(flat(one)) for one in values)

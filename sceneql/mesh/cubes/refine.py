@@ -39,7 +39,7 @@ MANY_GROUPS = 2**12
 MOST_BENT = 2**18
 """Most triangles of the fine cells in which normals vary by too much: beyond it, and beyond 4 times the coarse
 triangles, the surface is left to shorter cells that are asked for."""
-MOST_TWICE = 2**18
+MOST_TWICE = 2**19
 """Most triangles of the mesh whose cells are cut by FINEST since the surface passes fine ones twice along an edge."""
 FEW_TWICE = 2.0**-9
 """Share of the triangles up to which such cells are left as they are: where surface touches itself in points, cells of

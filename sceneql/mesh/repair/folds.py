@@ -66,8 +66,28 @@ def overturned(tape: Tape, polygons: Polygons, rest: Ints | None = None) -> Rows
     if not len(rows):
         return rows
     facing_in = rows[facing(tape, polygons.vertices[polygons.triangles[rows]]) < 0.0]
+    right = at_jumps(tape, polygons, facing_in)
+    facing_in, rows = facing_in[~right], np.setdiff1d(rows, facing_in[right])
     found = np.union1d(inverted(polygons, facing_in, rest), wrinkles(polygons, facing_in))
     return np.union1d(found, turned_over(polygons, rows))
+
+
+def at_jumps(tape: Tape, polygons: Polygons, rows: Rows) -> NDArray[np.bool_]:
+    """(n,) whether f is negative just inside of triangles ``rows`` (n,) and not just outside: there they face rightly.
+
+    For triangles that face against the gradient: f jumps at them, as at the steps of ``floor``, or they are at an edge.
+    """
+    import numpy as np
+
+    from sceneql.field.tape.tape_solid import field_values
+
+    a, b, c = (polygons.vertices[polygons.triangles[rows, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    sizes = np.sqrt(np.linalg.norm(across, axis=1, keepdims=True))
+    step = OFF * np.divide(across, sizes, out=np.zeros_like(across), where=sizes > 0.0)
+    inside, outside = (field_values(tape, (a + b + c) / 3.0 + side * step) for side in (-1.0, 1.0))
+    found: NDArray[np.bool_] = (inside < 0.0) & ~(outside < 0.0)
+    return found
 
 
 def wrinkles(polygons: Polygons, rows: Rows) -> Rows:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import ceil, cos, inf, isfinite, pi, sin, sqrt
+from math import ceil, cos, hypot, inf, isfinite, pi, sin, sqrt
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import field_validator
@@ -229,7 +229,7 @@ class Implicit(Solid):
             least = min(least, value if isfinite(value) else inf)
         return least
 
-    def cut_by_default(self) -> tuple[str, str]:
+    def cut_by_default(self, flat: bool = False) -> tuple[str, str]:
         """The ball about the origin, where no bounds are given and the solid or surface goes on there at the start."""
         if "bounds" in self.model_fields_set:
             return "", ""
@@ -240,6 +240,9 @@ class Implicit(Solid):
             return known[node.name]
 
         for place in _on_a_ball(PLACES):
+            if flat:
+                wide = hypot(*place[:2])
+                place = (place[0] / wide, place[1] / wide, 0.0)
             try:
                 known |= zip("xyzt", (*(0.5 * x for x in place), 0.0), strict=True)
                 within = evaluate(self.field.expr, look_up)
