@@ -25,6 +25,8 @@ MOST = 24
 """Largest number of masses that are looked at."""
 SHORTEST = 1.0
 """[s] A film that is shorter is most likely a piece of one."""
+FALL = 4.0
+"""Way of a fall over the height at the start, and a meter, from which on a body has come down."""
 CLOSE = 0.5
 """Part of the sum of two radii below which two masses certainly meet."""
 
@@ -37,13 +39,21 @@ def warn(facts: Facts, found: Diagnostics) -> None:
             continue
         forces = [cast(Interaction, one.kind) for one in facts.forces(island)]
         pull = pull_of(forces) if forces else (0.0, 0.0, 0.0)
-        if pull is None:
+        if pull is None or _lands(facts, island, pull):
             continue
         starts = {name: starts_of(facts.models[name], facts.tasks, start) for name in island.models}
         if not all(starts.values()) or sum(map(len, starts.values())) > MOST:
             continue
         _missed(facts, island, starts, pull, start, found)
     _through(facts, start, found)
+
+
+def _lands(facts: Facts, island: Island, pull: tuple[float, ...]) -> bool:
+    """Whether all bodies certainly fall much farther than they start high, as most do: no more is asked then."""
+    fall = -0.5 * pull[1] * facts.clock.end**2
+    driven = [facts.objects.get(name) for model in island.models for name in facts.models[model].drives()]
+    places = [constant(getattr(kind, "position", None)) for kind in driven]
+    return bool(places) and all(at is not None and fall > FALL * (1.0 + abs(at[1])) for at in places)
 
 
 def _many(facts: Facts, island: Island) -> bool:

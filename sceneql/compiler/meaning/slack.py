@@ -17,6 +17,8 @@ SHORT, LONG = 5.0, 20.0
 """
 SAG = 20.0
 """Extents of a net by which a spring is lengthened by its weight, from which on it is too soft."""
+SHORTEST = 0.5
+"""[s] A film that is shorter is most likely a piece of one."""
 SEEN = 0.02
 """Strain of a curtain by its weight below which nothing is seen to move."""
 STRETCH = 2.0
@@ -63,7 +65,8 @@ def _hangs(facts: Facts, island: Island, task: Task, pull: tuple[float, ...], fo
 
 def _unheld(facts: Facts, island: Island, pull: tuple[float, ...] | None, found: Diagnostics) -> None:
     """A net or a solid of elements with weight, alone in its island, that is held nowhere and touches nothing."""
-    if pull is None or island.contacts or facts.ties(island) or len(island.models) > 1 or not facts.whole:
+    short = facts.clock.end < SHORTEST
+    if pull is None or island.contacts or facts.ties(island) or len(island.models) > 1 or short or not facts.whole:
         return
     task = facts.tasks[island.models[0]]
     kind: Any = task.kind
