@@ -172,3 +172,22 @@ def test_an_axis_has_at_least_three_ticks(low, span, log, count):
     low = 10 ** (low / 1e5) if log else low
     high = low * (1 + span) if log else low + max(span, abs(low) * 1e-6)
     assert 3 <= len(Scale(low, high, log).ticks(count)) <= 10
+
+
+@pytest.mark.parametrize(
+    ("y", "names"),
+    [
+        ("[drop.kinetic, drop.potential]", ["kinetic", "potential"]),
+        ("[drop.center.x, drop.center.y]", ["x", "y"]),
+        ("drop.center", ["x", "y", "z"]),
+        ("[drop.kinetic, 2*drop.potential]", ["x", "y"]),
+    ],
+)
+def test_curves_of_listed_outputs_have_their_names(tmp_path, y, names):
+    """They were called x and y, as if the list were a vector."""
+    (tmp_path / "scene.yaml").write_text(
+        FALL.replace("{rise: drop.center.y - initial(drop.center.y), high: drop.center.y}", y)
+    )
+    graph = load(tmp_path / "scene.yaml")
+    (moment,) = simulate(graph, [0.5])
+    assert [curve.name for curve in graph.tasks["plot"].kind._curves(moment)] == names

@@ -11,7 +11,7 @@ from sceneql.pictures.anchors import CORNERS, MARGIN, Box, Place, box_at
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.dimension import Dimension
-from sceneql.quantities.expression import Symbol
+from sceneql.quantities.expression import Link, Symbol, Vector
 from sceneql.quantities.units import describe, parse_unit, unit_of
 
 if TYPE_CHECKING:
@@ -153,7 +153,7 @@ class Graph(Overlay):
         named = isinstance(self.y, dict) or self.each is not None or bool(one.expr.type.shape)
         title = self.title
         if title is None:
-            title = "" if isinstance(self.y, dict) else _written(one)
+            title = "" if isinstance(self.y, dict) or _listed(one) else _written(one)
         log = self.log or ""
         over_time = self.x is None or isinstance(self.x.expr, Symbol)
         draw_plot(
@@ -186,8 +186,8 @@ class Graph(Overlay):
                 times, values = moment.course(value, variant)
                 across = times if self.x is None else moment.course(self.x, variant)[1]
                 values = np.asarray(values).reshape(len(times), -1)
-                for k in range(values.shape[1]):
-                    component = "xyz"[k] if values.shape[1] in (2, 3) else str(k) if values.shape[1] > 1 else ""
+                components = _components(value, values.shape[1])
+                for k, component in enumerate(components):
                     told = " ".join(part for part in (variant or "", name, component) if part)
                     yield Curve(told, times, across, values[:, k], colors[count % len(colors)], moment.time)
                     count += 1
@@ -201,6 +201,24 @@ def _unfit(name: str, text: str | None, dimension: Dimension | None) -> Iterator
                 yield Problem(f"what is drawn is {describe(dimension)}, which {text} is no unit of", (name,))
         except ScriptError as error:
             yield Problem(error.diagnostics[0].message, (name,), code=error.diagnostics[0].code)
+
+
+def _components(value: Value, count: int) -> list[str]:
+    """Names of the curves of a value: those of the outputs that it lists, else of the axes, or numbers."""
+    if (names := _listed(value)) and len(names) == count:
+        return names
+    return list("xyz"[:count]) if count in (2, 3) else [str(k) if count > 1 else "" for k in range(count)]
+
+
+def _listed(value: Value) -> list[str]:
+    """The outputs of which a value is a list, ``[swing.kinetic, swing.potential]``, by what they differ in."""
+    items = value.expr.items if isinstance(value.expr, Vector) else ()
+    links = [(one.task, one.output) for one in items if isinstance(one, Link)]
+    if not links or len(links) < len(items) or len({*links}) < len(links):
+        return []
+    if len({task for task, _ in links}) == 1:
+        return [output for _, output in links]
+    return [task if len({output for _, output in links}) == 1 else f"{task}.{output}" for task, output in links]
 
 
 def _written(value: Value) -> str:
