@@ -139,8 +139,8 @@ def places(text, told, snippet):
         around = [*around, (root, field)]
     names = re.findall(r"'([^']+)'", told.message) if " has no field" in told.message else []
     for owner, key in around:
-        if key == field:
-            yield put(text, owner, key, snippet)
+        if key == field:  # what stands beside it and is no field is left out
+            yield put(text, owner, key, snippet, [one for one in names if one in owner.entries and one != key])
     for owner, key in around:
         if owner.keys[key].start == told.span.start or key in names:
             drop = [one for one in names if one in owner.entries and one != key]
@@ -152,7 +152,8 @@ def places(text, told, snippet):
             yield put(text, owner, key, f"{key}: {{{snippet}}}")
             yield put(text, owner, key, snippet)
     for owner, _ in around:
-        yield put(text, owner, field, snippet) if field in owner.entries else beside(text, owner, snippet)
+        drop = [one for one in names if one in owner.entries and one != field]
+        yield put(text, owner, field, snippet, drop) if field in owner.entries else beside(text, owner, snippet)
     if isinstance(root, Mapping) and field not in root.entries:
         whole = text if text.endswith("\n") else f"{text}\n"
         yield whole + snippet + "\n", len(whole), len(whole + snippet)

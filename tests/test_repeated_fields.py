@@ -173,6 +173,12 @@ clock: {{end: 1 s}}
     assert moment.read("wire", "through") == pytest.approx(np.array(expected), abs=1e-15)
 
 
+def test_masses_that_are_copies_have_one_name_together(tmp_path):
+    wire = "wire: {tube: {through: chain.bead.position}}, last:"
+    (moment,) = pipeline.simulate(load(tmp_path, CHAIN.replace("last:", wire)), [0.0])
+    assert moment.read("wire", "through").tolist() == [[0.2 * (k + 1), 2, 0] for k in range(3)]
+
+
 def test_a_name_for_all_copies_within_a_template_means_its_own(tmp_path):
     text = """
 templates:

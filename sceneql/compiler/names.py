@@ -30,6 +30,7 @@ from sceneql.quantities.units import continues_unit, in_words, unit_hint
 
 WORDS = re.compile(WORD)
 PICTURES = ("jpg", "jpeg", "png", "hdr", "exr", "tif", "tiff", "webp", "gif")
+DOTTED = re.compile(r"[^\W\d]\w*(\.\w+)+")
 COPY_NUMBERS = ("index", "idx", "id", "n", "k", "j", "copy", "number", "num", "instance")
 """Names of other programs for the number of a copy."""
 DEEPEST = 40
@@ -197,19 +198,21 @@ class Names:
         return (part, name[len(part) + 1 :]) if part else (name, "")
 
     def copies_of(self, name: str) -> list[str]:
-        """What is meant by an output of a part that `repeat` made many of, in the copies' order; [] where it is none.
+        """What is meant by an output of what `repeat` made many of, parts or masses, in the copies' order; [] for none.
 
         ``bead.0.position``, ``bead.1.position``, ... for ``bead.position``.
         """
-        part, _, output = name.rpartition(".")
-        if not part or part in self.parts:
+        if DOTTED.fullmatch(name) is None:
             return []
-        inside = part if self.scope is None else self.scope.resolve(f"{part}.0").removesuffix(".0")
-        every = (f"{inside}.{k}" for k in count())
-        copies = takewhile(lambda copy: copy in self.parts or f"{copy}.{output}" in self.given, every)
-        found = [f"{copy}.{output}" for copy in copies]
-        known = self.outputs_of(f"{inside}.0") if f"{inside}.0" in self.parts else None
-        return [] if known and not self.gives(f"{inside}.0.{output}") and not self.unsure(f"{inside}.0") else found
+        pieces = name.split(".")
+        for size in range(1, len(pieces)):
+            first, last = ".".join(pieces[:size]), ".".join(pieces[size:])
+            inside = first if self.scope is None else self.scope.resolve(f"{first}.0").removesuffix(".0")
+            every = (f"{inside}.{k}.{last}" for k in count())
+            copies = list(takewhile(lambda one: one in self.given or self.gives(one), every))
+            if copies and not self.gives(f"{inside}.{last}"):
+                return copies
+        return []
 
     def of_copy(self, node: Node) -> Names:
         """These names with the number of a copy that `repeat` made inside of a list; the same for other nodes."""
@@ -263,7 +266,8 @@ class Names:
         if self.unsure(task):
             return None
         wanted = ".".join(parts[first:])
-        help = self._of_mover(task, parts[first:]) or output_meant(task, wanted, outputs, self._giving)
+        help = self._of_copies(".".join(parts)) or self._of_mover(task, parts[first:])
+        help = help or output_meant(task, wanted, outputs, self._giving)
         help = help or suggestion(wanted, outputs)
         help = help or f"it gives {', '.join(sorted(outputs)) or 'nothing'}"
         self.found.error("unknown-output", f"'{'.'.join(parts[:first])}' gives no '{wanted}'", span, help=help)
@@ -355,16 +359,14 @@ class Names:
         return names
 
     def _of_copies(self, wanted: str) -> str | None:
-        """The help for the name, or an output, of a part that `repeat` made many of, where one value is wanted."""
-        part, _, output = (wanted, "", "position") if f"{wanted}.0" in self.parts else wanted.rpartition(".")
-        if f"{part}.0" in self.parts and output.endswith("s") and self.gives(f"{part}.0.{output[:-1]}"):
-            output = output[:-1]  # positions
-        if f"{part}.0" not in self.parts or (known := self.outputs_of(f"{part}.0")) is None or output not in known:
+        """The help for the name, or an output, of what `repeat` made many of, where one value is wanted."""
+        every = self.copies_of(wanted)
+        together = wanted if every else f"{wanted}.position"
+        if not (every := every or self.copies_of(together)):
             return None
-        help = f"its copies are {part}.0, {part}.1, ...: one is `{part}.0.{output}`"
-        return (
-            f"{help}, all of them in a list of places `{part}.{output}`" if known[output].type.shape == (3,) else help
-        )
+        head, _, tail = every[0].partition(".0.")
+        help = f"its copies are {head}.0, {head}.1, ...: one is `{every[0]}`"
+        return f"{help}, all of them in a list of places `{together}`" if tail.endswith("position") else help
 
     def _copy_number(self, wanted: str) -> str | None:
         """The help for the number of a copy by another program's name: the name that it has in the copies around."""

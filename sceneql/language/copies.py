@@ -68,7 +68,7 @@ class Copies:
         for key in item.entries:
             if _BRACES.search(key):  # `masses: {repeat: ..., "m{i}": {...}}`
                 message = f"'{key}' cannot be a name: `repeat` stands inside of what it repeats"
-                self.found.error("part-name", message, item.keys[key].span, help=_turned_round(name, key, item))
+                self.found.error("part-name", message, item.keys[key].span, help=_inside_each(name, item))
                 yield name, hole(item.span)
                 return
         times = read_repeat(item.entries[KEY], scope, self.define, self.lost, self.found, names=True)
@@ -92,14 +92,18 @@ class Copies:
             yield f"{name}.{number}", copy
 
 
-def _turned_round(field: str, key: str, item: Mapping) -> str:
-    """The help for a name with a number in braces, beside a `repeat` that should stand within its entry."""
-    plain, fields = _BRACES.sub("", key).strip("_-.") or "one", item.entries[key]
-    number = "".join(found[0] for found in _BRACES.finditer(key))
-    inner = one_line(fields).removeprefix("{").removesuffix("}") if isinstance(fields, Mapping) else "..."
-    entry = f"{plain}: {{repeat: {one_line(item.entries[KEY])}, {inner}}}"
-    line = f"{field}: {{{entry}}}" if field else f"{{{entry}}}"
-    return f'write `{line}`; the copies are {plain}.0, {plain}.1, ..., by their number `"{plain}.{number}"`'
+def _inside_each(field: str, item: Mapping) -> str:
+    """The help for names with numbers in braces, beside a `repeat` that should stand within each of their entries."""
+    repeat, entries, copies = one_line(item.entries[KEY]), [], ""
+    for key, fields in item.entries.items():
+        if key == KEY:
+            continue
+        plain = _BRACES.sub("", key).strip("_-.") or "one"
+        copies = copies or f'the copies are {plain}.0, {plain}.1, ..., by their number `"{plain}.{{i}}"`'
+        inner = one_line(fields).removeprefix("{").removesuffix("}") if isinstance(fields, Mapping) else "..."
+        entries.append(f"{plain}: {{{', '.join(one for one in (f'repeat: {repeat}', inner) if one)}}}")
+    line = f"{{{', '.join(entries)}}}"
+    return f"write `{f'{field}: {line}' if field else line}`; {copies}"
 
 
 def in_braces(node: Node, scope: Scope) -> Node:

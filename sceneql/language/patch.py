@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator
 from typing import Final, cast
 
@@ -108,9 +109,23 @@ def variant(root: Mapping, name: str) -> list[Patch]:
     if empty(patches) or broken(patches):
         return []
     if not isinstance(patches, Mapping):
-        help = "write `name: {define.k: 200 N/m}`"
+        help = _by_path(root, name, patches)
         raise ScriptError([Diagnostic("section-shape", "a variant holds values by path", patches.span, help)])
     return [(path, n, patches.keys[path].span) for path, n in patches.entries.items() if path not in VARIANT_OPTIONS]
+
+
+def _by_path(root: Mapping, name: str, patches: Node) -> str:
+    """The help for a variant that is a value, an equation, or a list of values of a define."""
+    define = root.entries.get("define")
+    known = [*define.entries] if isinstance(define, Mapping) else []
+    items = [one.span.text for one in patches.items] if isinstance(patches, Sequence) else []
+    if name in known and items:
+        told = ", ".join(f"{name}_{k}: {{define.{name}: {text}}}" for k, text in enumerate(items, 1))
+        return f"each variant has a name, and the value by its path: write `variants: {{{told}}}`"
+    given = re.fullmatch(r"[\"']?(\w+)\s*[=:]\s*([^\"']+)[\"']?", patches.span.text)
+    if given is not None and given[1] in known:
+        return f"write `{name}: {{define.{given[1]}: {given[2]}}}`"
+    return f"write `{name}: {{define.{known[0] if known else 'k'}: 200 N/m}}`, with its value"
 
 
 def parse_set(text: str) -> Patch:

@@ -64,7 +64,9 @@ def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[U
             raise ScriptError([replace(found, help=other)]) from None
         if instead("unit", word.group()) is not None:
             raise
-        hint = f"for a product write `*{word.group()[:40]}`"
+        digits_before = re.search(r"[\d.]*$", text[:at])
+        factor = "" if digits_before is None or start > at else digits_before.group()
+        hint = f"for a product write `{factor}*{word.group()[:40]}`"
         if word.group() in ("x", "y", "z"):
             number = re.search(r"[\d.]*$", text[:at]) or word
             raise ScriptError([replace(found, help=f"write `{number.group()}*{word.group()}` for a product")]) from None

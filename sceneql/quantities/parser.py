@@ -22,6 +22,7 @@ from sceneql.quantities.literal import (
     with_points,
 )
 from sceneql.quantities.operations import FUNCTIONS, MANY, OPERATIONS
+from sceneql.quantities.other_words import LIBRARIES
 from sceneql.quantities.spaced import (
     bracketed,
     by_frame,
@@ -234,6 +235,8 @@ class _Parser:
     def _rewritten(self, name: str, args: tuple[Expr, ...], opening: int) -> str | None:
         """The help for a function of another language, whose bracket opens there."""
         texts, inside = [arg.span.text if arg.span else "" for arg in args], self.text[opening : self.previous]
+        if "." in name and len(args) == 1 and name.partition(".")[0] not in LIBRARIES:  # its value at a time
+            return f"write `at({name}, {texts[0] if texts[0][-1:].isalpha() else f'{texts[0]} s'})`"
         anew = rewritten(name, texts) if all(text in inside for text in texts) else None
         return f"write `{anew}`" if anew else None
 

@@ -248,7 +248,10 @@ def ternary(text: str) -> str | None:
     if found is not None:
         return f"where({found[1].strip()}, {found[2].strip()}, {found[3].strip()})"
     found = _IF_ELSE.fullmatch(text.strip())
-    return None if found is None else f"where({found[2].strip()}, {found[1].strip()}, {found[3].strip()})"
+    if found is None:
+        return None
+    condition = modulo(found[2].strip()) or found[2].strip()
+    return f"where({condition}, {found[1].strip()}, {found[3].strip()})"
 
 
 def typed_plainly(text: str) -> str | None:

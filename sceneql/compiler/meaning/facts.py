@@ -45,9 +45,9 @@ class Facts:
 
     @cached_property
     def frame(self) -> float:
-        """Seconds of the simulation from one frame to the next, in the film that has the fewest [s]."""
+        """Seconds of the simulation from one frame to the next, in the film that has the most [s]."""
         films = [getattr(task.kind, "fps", None) or self.clock.fps for task in self.tasks.values() if _films(task)]
-        return self.clock.speed / min(films, default=self.clock.fps)
+        return self.clock.speed / max(films, default=self.clock.fps)
 
     @cached_property
     def whole(self) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from sceneql.compiler.meaning.facts import Facts
 from sceneql.compiler.values_below import values_of
 from sceneql.quantities.diagnostic import Diagnostics
-from sceneql.quantities.expression import Call, Expr, Keys, Number, Symbol, each_once
+from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Symbol, each_once
 
 
 def warn(facts: Facts, found: Diagnostics) -> None:
@@ -15,7 +15,8 @@ def warn(facts: Facts, found: Diagnostics) -> None:
     for keys in _all_keys(facts):
         texts = {key.value.span.text.strip() if key.value.span is not None else None for key in keys.keys}
         times = [float(key.time.value) for key in keys.keys if isinstance(key.time, Number)]
-        if len(keys.keys) > 1 and len(texts) == 1 and None not in texts and not _slopes(keys):
+        alike = len(keys.keys) > 1 and len(texts) == 1 and None not in texts
+        if alike and not _slopes(keys) and not _moves(keys.keys[0].value):
             text = f"all of these keys are `{texts.pop()}`: nothing moves"
             found.warning(
                 "nothing-moves", text, keys.span, help="give one of them another value, or leave the keys out"
@@ -41,6 +42,11 @@ def _all_keys(facts: Facts) -> Iterator[Keys]:
             if id(value.expr) not in known:
                 known.add(id(value.expr))
                 yield from (node for node in each_once(value.expr) if isinstance(node, Keys) and node.span is not None)
+
+
+def _moves(value: Expr) -> bool:
+    """Whether a key's value varies by itself, in time or with another part."""
+    return any(isinstance(node, Symbol | Link) for node in each_once(value))
 
 
 def _slopes(keys: Keys) -> bool:

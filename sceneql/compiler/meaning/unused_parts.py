@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 from sceneql.compiler.meaning.facts import Facts
@@ -9,6 +10,8 @@ from sceneql.compiler.values_below import values_of
 from sceneql.graph import Task
 from sceneql.kinds import Material, Model
 from sceneql.quantities.diagnostic import Diagnostics
+
+_WORD = re.compile(r"\w+")
 
 
 def warn(facts: Facts, order: Mapping[str, Task], found: Diagnostics) -> None:
@@ -22,8 +25,12 @@ def warn(facts: Facts, order: Mapping[str, Task], found: Diagnostics) -> None:
     measured = {link.task for part in (settings.expect, settings.studies) for v in values_of(part) for link in v.links}
     users = {need for task in facts.tasks.values() for need in task.needs} | measured
     main = facts.script.sources[0].name
+    variants = facts.script.root.entries.get("variants") or facts.script.base.entries.get("variants")
+    varied = set() if variants is None else {*_WORD.findall(variants.span.text)}
     for task in facts.tasks.values():
         span = task.span
+        if task.name in varied:
+            continue  # a variant may use it
         if task.name in users or task.name in order or span is None or span.source.name != main or "." in task.name:
             continue
         if isinstance(task.kind, Material):

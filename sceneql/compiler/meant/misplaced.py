@@ -34,6 +34,8 @@ NAMES = {"outputs": "film", "cameras": "main", "solvers": "main", "contacts": "t
 """Names of parts in examples."""
 SETTING = "clock"
 """The group of settings whose fields stand at the left margin in other programs."""
+LENGTHS = ("time", "duration", "length", "seconds")
+"""Sections of other programs for how long a film lasts."""
 SHOWN = 200
 """Longest value that a message repeats."""
 SWITCHES = ("yes", "true", "on")
@@ -63,6 +65,8 @@ class _Section:
     def _as_setting(self) -> Iterator[str]:
         """It as the clock: ``animation: {fps: 24, duration: 4 s}``."""
         (cls,) = _records(Settings.model_fields[SETTING])
+        if self.key in LENGTHS and SETTING not in self.script.root.entries and self._takes(cls, "end", self.value):
+            yield f"{SETTING}: {{end: {one_line(self.value)}}}"
         told = self._renamed(cls)
         if told and SETTING not in self.script.root.entries:
             yield f"{SETTING}: {{{told}}}"

@@ -37,7 +37,7 @@ TYPES = ("type", "kind", "model", "name")
 """Fields by which other programs tell which of several groups the others are in."""
 WAYS = ("axis", "direction", "about", "dir")
 """Fields of other programs for a vector's size and its direction."""
-STARTS = ("initial", "start", "init", "value", "y0", "x0", "initialvalue", "initialcondition", "ic", "atstart")
+STARTS = ("initial", "start", "init", "y0", "x0", "initialvalue", "initialcondition", "ic", "atstart")
 """Fields of other programs for what a state starts with."""
 SIZES = ("width", "height", "depth", "length")
 TURNS = ("rotation", "turn")
@@ -201,6 +201,7 @@ def _state(node: Node) -> tuple[str, str] | None:
     """What a state starts with and its rate, of an entry that holds just these; None for other entries."""
     fields = node.entries if isinstance(node, Mapping) else {}
     starts = [one for one in fields if one.replace("_", "").lower() in STARTS]
+    starts = starts or [one for one in fields if one == "value"]
     if len(fields) != 2 or len(starts) != 1:
         return None
     (rate,) = fields.keys() - {*starts}

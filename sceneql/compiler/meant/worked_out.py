@@ -67,6 +67,8 @@ def worked_out(name: str, unknown: Sequenced[str], node: Mapping, known: Collect
         told = prism(node.entries, name)
     if told is None and {"shows", "paint"} <= {*known} and name in HEIGHTS:
         told = _height(node)
+    if told is None and {"of", "because"} <= {*known}:
+        told = _measured(name, node)
     if told is None and name.lower() in FED and "species" in known and "species" not in node.entries:
         told = _fed(node)
     told = told or _moduli(name, unknown, node, known)
@@ -227,6 +229,19 @@ def _height(node: Mapping) -> str | None:
     box = f"[{left:g} -1 {back:g}, {right:g} 1 {front:g}]"
     told = f'{{implicit: {{field: "y - ({formula})", bounds: {{box: {box}}}}}}}'
     return f"a height above x and z is a formula: write `{told}`"
+
+
+def _measured(name: str, node: Mapping) -> str | None:
+    """The help for what is measured as a field's name, ``final(x): 1 m``, and for an instant beside it."""
+    text = node.entries[name].span.text
+    of = node.entries.get("of")
+    if of is not None and name in ("at", "time", "when") and re.fullmatch(r"[\w.]+", of.span.text):
+        told = f'of: "at({of.span.text}, {text})"'
+        return f"the instant stands in what is measured: write `{told}`"
+    if of is None and re.fullmatch(r"\w+\([\w., ]+\)|\w+(?:\.\w+)+", name) and "\n" not in text:
+        name = f'"{name}"' if "," in name else name
+        return f"write `of: {name}, value: {text}, because: exact`, or another reason"
+    return None
 
 
 def _fed(node: Mapping) -> str:

@@ -11,7 +11,7 @@ from sceneql.compiler.passes.unforced import starts_moving
 from sceneql.compiler.passes.unseen import ground_level, level_of
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Island, Task
-from sceneql.kinds import Contact, Interaction, Model, Object, Tie, Value
+from sceneql.kinds import Contact, Interaction, Model, Object, Ref, Tie, Value
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.run.falling import HELP, MOST_OBJECTS, standing
 
@@ -128,7 +128,7 @@ def starts_of(kind: Model, tasks: Mapping[str, Task], start: Any) -> list[Start]
 def _started(kind: Any, tasks: Mapping[str, Task], start: Any) -> Iterator[Start]:
     still = (0.0, 0.0, 0.0)
     bodies = getattr(kind, "bodies", None) or {"": kind}
-    driven = {body.of.name: body for body in bodies.values() if getattr(body, "of", None) is not None}
+    driven = {body.of.name: body for body in bodies.values() if isinstance(getattr(body, "of", None), Ref)}
     for name, body in driven.items():
         at, velocity = getattr(body, "position", None), body.velocity or getattr(kind, "velocity", None) or still
         shape = tasks[name].original or tasks[name].kind
