@@ -84,7 +84,8 @@ def _missed(
     if any(facts.tasks[name].span in told for name in island.models):
         return
     together = [_nearest(a, b, end) < 1.5 * (a[2] + b[2]) for a, b in combinations(every, 2)]
-    if any(together) or any(_comes(facts.tasks[other], one, pull, end, start) for other in others for one in every):
+    grounds = sorted(others, key=lambda name: level_of(facts.tasks[name].kind) is None)  # these first, without arrays
+    if any(together) or any(_comes(facts.tasks[other], one, pull, end, start) for other in grounds for one in every):
         return
     contact = facts.tasks[island.contacts[0][0]]
     first = next(iter(starts))
