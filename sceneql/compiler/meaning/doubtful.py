@@ -8,6 +8,7 @@ from sceneql.compiler.meaning import (
     after_end,
     alike_variants,
     at_rest,
+    braked,
     buried_source,
     elementary,
     enclosed,
@@ -19,6 +20,7 @@ from sceneql.compiler.meaning import (
     maps,
     missed,
     one_spring,
+    short_ways,
     slack,
     solid_parts,
     still_fields,
@@ -57,9 +59,11 @@ ALL = (
     maps,
     missed,
     one_spring,
+    short_ways,
     slack,
     still_fields,
     still_flows,
+    braked,
 )
 
 

@@ -12,7 +12,7 @@ from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Symbol
 
 def warn(facts: Facts, found: Diagnostics) -> None:
     """Warn of each such group of keyframes over the time."""
-    for keys in _all_keys(facts):
+    for keys in all_keys(facts):
         texts = {key.value.span.text.strip() if key.value.span is not None else None for key in keys.keys}
         times = [float(key.time.value) for key in keys.keys if isinstance(key.time, Number)]
         alike = len(keys.keys) > 1 and len(texts) == 1 and None not in texts
@@ -35,7 +35,8 @@ def warn(facts: Facts, found: Diagnostics) -> None:
             found.warning("keys-beyond", text, keys.span, help=help)
 
 
-def _all_keys(facts: Facts) -> Iterator[Keys]:
+def all_keys(facts: Facts) -> Iterator[Keys]:
+    """The keyframes of all parts, each once."""
     known: set[int] = set()
     for task in facts.tasks.values():
         for value in values_of(task.original or task.kind):

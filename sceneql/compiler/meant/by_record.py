@@ -15,6 +15,7 @@ from sceneql import kinds
 from sceneql.compiler.annotations import unwrap
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.meant.chained import swept
+from sceneql.compiler.meant.going_along import carried
 from sceneql.compiler.meant.own_values import in_si
 from sceneql.compiler.meant.under_names import equated
 from sceneql.compiler.meant.unwrapped import unwrapped
@@ -51,6 +52,8 @@ def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> st
     sweep = node.entries.get("sweep")
     if "sweep" in known and isinstance(sweep, Scalar) and (path := swept(reader, node.entries, sweep.text)) is not None:
         return path
+    if (carrier := carried(reader, cls, name, node)) is not None:
+        return carrier
     if not issubclass(cls, kinds.Kind):
         return None
     if issubclass(cls, kinds.Object):

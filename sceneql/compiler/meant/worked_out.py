@@ -28,8 +28,6 @@ AWAY = ("distance", "radius", "dist")
 """Fields of other programs for how far a camera stays behind what it follows."""
 PLACES = ("center", "centre", "position", "pos", "at", "location", "point")
 """Fields of other programs for the place of a ball."""
-PARENTS = ("parent", "parent_to", "attach_to", "attached_to", "child_of")
-"""Fields of other programs for the part that another goes along with."""
 WAYS, SIZES = ("direction", "dir", "axis"), ("length", "magnitude", "size", "len")
 """Fields of other programs for an arrow's direction and length."""
 WHIRLS = ("speed", "velocity", "rate", "strength", "angular_velocity", "omega")
@@ -72,7 +70,7 @@ def worked_out(name: str, unknown: Sequenced[str], node: Mapping, known: Collect
     if told is None and name.lower() in FED and "species" in known and "species" not in node.entries:
         told = _fed(node)
     told = told or _moduli(name, unknown, node, known)
-    told = told or _whirling(name, node, known) or _beside(name, node, known)
+    told = told or _whirling(name, node, known)
     return told or _progress(name, node, known) or _followed(name, node, known) or _pulling(name, node, known)
 
 
@@ -166,21 +164,6 @@ def _colors(name: str, node: Mapping, known: Collection[str]) -> str | None:
     if not {"color", "other"} <= {*known} or name not in ("colors", "colours") or len(items) != 2:
         return None
     return f"write `color: {items[0]}, other: {items[1]}`"
-
-
-def _beside(name: str, node: Mapping, known: Collection[str]) -> str | None:
-    """The help for a place that is told from another part, which moves."""
-    other = node.entries[name].span.text
-    if name not in PARENTS or "position" not in known or not other.isidentifier():
-        return None
-    place = node.entries.get("position")
-    numbers = None if place is None else numbers_with_unit(place.span.text)
-    if place is not None and (numbers is None or len(numbers[0]) != 3):
-        return None
-    away = "" if numbers is None else f" + [{', '.join(f'{one:g} {numbers[1]}'.rstrip() for one in numbers[0])}]"
-    link = f'"{other}.position{away}"' if away else f"{other}.position"
-    linked = f"what goes along with '{other}' is linked to its place: write `position: {link}`"
-    return f"{linked}; if it is a group this goes to its `children`"
 
 
 def _whirling(name: str, node: Mapping, known: Collection[str]) -> str | None:
