@@ -360,9 +360,9 @@ class Names:
 
     def _of_copies(self, wanted: str) -> str | None:
         """The help for the name, or an output, of what `repeat` made many of, where one value is wanted."""
-        every = self.copies_of(wanted)
-        together = wanted if every else f"{wanted}.position"
-        if not (every := every or self.copies_of(together)):
+        meant = (wanted, wanted.removesuffix("s"), f"{wanted}.position")
+        together, every = next(((one, found) for one in meant if (found := self.copies_of(one))), ("", []))
+        if not every:
             return None
         head, _, tail = every[0].partition(".0.")
         help = f"its copies are {head}.0, {head}.1, ...: one is `{every[0]}`"

@@ -180,6 +180,8 @@ class _Path:
                 names = [*root.entries, *self.families, *(n for key in sections for n in _keys(root.entries.get(key)))]
                 message = f"'{first}' is in several sections" if owners else f"the script has no '{first}'"
                 there = None if owners else suggestion(first, names, STRONG) or _written_as(root, self.steps[-1])
+                if not owners and (given := re.fullmatch(r"\s*([\w.]+)\s*=\s*(.+?)\s*", self.path)) is not None:
+                    there = f"a colon stands between a name and its value: write `{given[1]}: {given[2]}`"
                 raise self.fail(0, message, help if owners else there or suggestion(first, names))
             self.steps, self.shift = [owners[0], *self.steps], 1
         return cast(Mapping, self.put(root, 0))

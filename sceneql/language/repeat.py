@@ -96,6 +96,9 @@ def read_repeat(
             if "to" in told and first.isdecimal() and told["to"].isdecimal() and first != "0":
                 given = str(int(told["to"]) - int(first) + 1)
             counter = next((told[key] for key in _COUNTERS if told.get(key, "").isidentifier()), counter)
+            if len(told) == len(node.entries) == 1 and {*told}.isdisjoint((*_COUNTS, *_COUNTERS)):
+                counter, given = next(((name, text) for name, text in told.items()))  # `{k: range(5)}`
+                given = loop[1] if (loop := _RANGE.search(given)) is not None else given
         help = f"write `repeat: {{count: {given}, as: {counter}}}`"
         if first.isdecimal() and first != "0":
             help += f", and `{counter} + {first}` for `{counter}` in its fields, for copies are numbered from 0"

@@ -138,8 +138,13 @@ OF_SECTIONS = (
     ),
     (
         "field.shots",
-        "from to start end duration length time",
-        "a shot lasts `until: 1 s`, and begins where the one before it ends",
+        "from to start end time",
+        "a shot goes `until: 1 s` of the film, and begins where the one before it ends",
+    ),
+    (
+        "field.shots",
+        "duration length lasts seconds",
+        "a shot ends at its `until`, a time of the film, and begins where the one before ends: add up what they last",
     ),
     (
         "field.diffusion",

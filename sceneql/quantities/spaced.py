@@ -244,6 +244,10 @@ def ternary(text: str) -> str | None:
     """A choice of other languages, ``c ? a : b`` or ``a if c else b``, as ``where(c, a, b)``; None of other texts."""
     if len(text) > LONGEST:
         return None
+    if (inner := re.fullmatch(r"\s*\[([^\[\]]*)\]\s*", text)) is not None:  # each component by itself
+        parts = [part.strip() for part in re.split(r",(?![^()]*\))", inner[1])]
+        chosen = [ternary(part) or part for part in parts]
+        return f"[{', '.join(chosen)}]" if chosen != parts else None
     found = _CHOICE.fullmatch(text.strip())
     if found is not None:
         return f"where({found[1].strip()}, {found[2].strip()}, {found[3].strip()})"
