@@ -18,16 +18,17 @@ UNITS = ((1.0, "N*s/m"), (1e-3, "g/s"), (1e-6, "mg/s"))
 
 
 def warn(facts: Facts, found: Diagnostics) -> None:
-    """Warn of each such drag, by the slowest to stop of each island that has not been told of."""
+    """Warn of each such drag on what has not been told of, by the slowest to stop."""
     told = [one.span for one in found.found if one.code == "nothing-moves"]
     for island in facts.groups if facts.whole else ():
-        moving = [start for name in island.models if (start := _start(facts.tasks[name])) is not None]
-        models = [facts.tasks[name].span for name in island.models]
-        drags = [task for task in facts.forces(island) if _drag(task) and task.span not in told]
-        if not moving or any(span in told for span in models):
-            continue
-        mass, speed, life, name = max(moving)
-        for task in drags:
+        braked = [one for one in island.forces if _drag(facts.tasks[one[0]])]
+        for force in dict.fromkeys(name for name, _ in braked):
+            task = facts.tasks[force]
+            models = [facts.tasks[name] for one, name in braked if one == force]
+            starts = [start for model in models if (start := _start(model)) is not None]
+            if not starts or any(one.span in told for one in (task, *models)):
+                continue
+            mass, speed, life, name = max(starts)
             linear = _drag(task)
             time = mass / linear
             if time >= UNSEEN * facts.frame:
