@@ -126,6 +126,14 @@ def test_an_object_that_falls_from_below_zero_has_the_ground_under_it(tmp_path):
     assert graph.tasks["floor"].kind.height.number() == pytest.approx(-2.2, abs=1e-12)
 
 
+def test_a_body_that_starts_lower_has_the_ground_under_it(tmp_path):
+    """A held block under the height 0 was said to start inside of a floor that the script does not have."""
+    objects = "objects: {ground: {box: {size: 9 1 9 m, position: 0 -0.5 0 m}}, ball: {sphere: {position: 0 3 0 m}}}"
+    bodies = "models: {earth: {rigid: {of: ground, fixed: yes}}, fall: {rigid: {of: ball, mass: 1 kg}}}"
+    graph = graph_of(tmp_path, f"{objects}\n{bodies}\nforces: [gravity, collision]")
+    assert graph.tasks["floor"].kind.height.number() == pytest.approx(-1, abs=1e-12)
+
+
 @pytest.mark.parametrize(
     ("other", "height"),
     [

@@ -28,6 +28,8 @@ AMOUNTS = ("rate", "strength", "amount", "value", "power", "flux", "intensity", 
 """Names of how much there is."""
 SQUARE = 0.01
 """Square of the distance [m^2] at which the formula has fallen to 1/e."""
+POINTS = ("p", "P", "pos", "position", "point", "pt", "xyz", "coord", "coords", "vertex")
+"""Names of other programs for the place at which a field is evaluated."""
 _RATE_OF = re.compile(r"d_?(\w+?)(?:_?dt)?|(\w+?)_?dot")
 EXAMPLE = ((0.5, 0.5), 10.0)
 """Place [m] and peak of the formula where nothing is told."""
@@ -95,6 +97,9 @@ def read_formula(
             if parts[0] == "time" and "t" in free:
                 help = SECONDS
             return Diagnostic("unknown-name", f"nothing is called '{parts[0]}'", span, help)
+        if len(parts) == 2 and parts[1] in free and parts[0] in POINTS and names.field(parts[0]) is None:
+            help = f"the place is {', '.join(one for one in 'xyz' if one in free)} here: write `{parts[1]}`"
+            return Diagnostic("unknown-name", f"nothing is called '{'.'.join(parts)}'", span, help)
         expr = names.lookup(parts, span)
         return expr if expr is None or isinstance(expr, Diagnostic) else names.plain(expr)
 

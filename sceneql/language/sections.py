@@ -24,6 +24,19 @@ TYPES: Final = ("type", "kind", "shape", "geometry", "primitive")
 """Keys by which other programs tell the word of a part."""
 NAMES: Final = ("name", "id")
 """Keys by which other programs name a part."""
+COPIES = (
+    "copy",
+    "copy_of",
+    "clone",
+    "like",
+    "instance",
+    "instance_of",
+    "prototype",
+    "extends",
+    "inherits",
+    "duplicate",
+)
+"""Words of other programs for a part that is as another one."""
 SHOWN: Final = 80
 """Longest text of fields that a message repeats."""
 _EQUATED = re.compile(r"([^\W\d]\w*)\s*=\s*(\S.*)")
@@ -93,6 +106,9 @@ def read_entry(what: str, node: Node, found: Diagnostics, sections: Collection[s
             help = f"the word stands around its fields: write `{inner}`"
             if own.isidentifier():
                 help = f"its name stands before its word, without a dash: write `{own}: {inner if more else word}`"
+        elif (copied := next((one for one in COPIES if one in words), None)) and name.isidentifier():
+            beside_it = ", ".join(f"{key}: {node.entries[key].span.text}" for key in words if key != copied)
+            help = f"write `{name}: {{use: {node.entries[copied].span.text}, {beside_it}}}`: `sceneql words use`"
         elif main not in ("", "group") and "scale" in words:
             help = f"a group scales what is in it: write `{name}: {in_group(main, _fields_of(main, words, node))}`"
         elif (other := instead("entry", words[0]) or next(filter(None, beside), None)) is not None:

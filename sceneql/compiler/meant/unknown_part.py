@@ -46,6 +46,11 @@ def several_meant(node: Sequence, mark: Refers, entry: Entry, catalogue: Catalog
     names = [item.span.text for item in node.items]
     if len(names) == 1:
         return f"write `{names[0]}`"
+    between = entry.fields.entries.get("between") if isinstance(entry.fields, Mapping) else None
+    if isinstance(between, Sequence) and node in between.items and len(between.items) != 2:
+        inner = [one for item in between.items for one in (item.items if isinstance(item, Sequence) else [item])]
+        all_ = ", ".join(dict.fromkeys(one.span.text for one in inner))
+        return f"all of one list touch one another: write `between: [{all_}]`"
     if mark.family == "cameras":
         return f"one camera films a picture; for two side by side write `layout: [[{', '.join(names)}]]` in its place"
     if "objects" not in (mark.family, mark.also):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any, cast
@@ -15,6 +16,8 @@ from sceneql.quantities.dimension import LENGTH
 from sceneql.quantities.expression import Link, Number, Type
 
 LOOKS = {"material", "color", "hidden"}
+ROUNDING = 1e-12
+"""Part of its size by which an object that stands on the height 0 may be lower."""
 """Fields by which a script says that an object is to be seen, or not."""
 
 
@@ -78,12 +81,21 @@ def _level(tasks: Mapping[str, Task]) -> Value:
 
 
 def _bottom(kind: Kind) -> float | None:
-    """The height [m] of an object's position minus its radius, as far as its fields alone determine it; else None."""
-    position, radius = (getattr(kind, name, None) for name in ("position", "radius"))
-    if not isinstance(position, Value) or not position.constant:
+    """The least height [m] of an object by its position and its radius or sizes, where these are constant; else None.
+
+    What is turned counts as a ball around it.
+    """
+    fields = {name: getattr(kind, name, None) for name in ("position", "radius", "size", "height", "rotation")}
+    known = {name: value for name, value in fields.items() if isinstance(value, Value) and value.constant}
+    if "position" not in known:
         return None
-    deep = radius.number() if isinstance(radius, Value) and radius.constant else 0.0
-    return float(position.number()[1]) - float(deep)
+    deep = float(known["radius"].number()) if "radius" in known else 0.0
+    if "size" in known or "height" in known:
+        x, y, z = known["size"].number() if "size" in known else (2.0 * deep, known["height"].number(), 2.0 * deep)
+        upright = "rotation" in known and abs(known["rotation"].number()[0]) == 1.0
+        deep = 0.5 * float(y if upright else math.hypot(x, y, z))
+    low = float(known["position"].number()[1]) - deep
+    return low if low < -ROUNDING * deep else max(low, 0.0)
 
 
 def _staged(tasks: Mapping[str, Task]) -> bool:

@@ -46,6 +46,8 @@ def report_overlaps(tasks: Mapping[str, Task], groups: Sequence[Island], found: 
         if inside:
             text = f"'{body}' starts inside '{other}'"
             help = "move one of them away, or name under `between` what may touch, without one of them"
+            if tasks[other].span is None:
+                help = f"'{other}' is there by default: leave it out, `objects: {{{other}: none}}`, or move '{body}' up"
             found.error("starts-inside", text, tasks[body].span, help=help)
 
 
