@@ -18,7 +18,8 @@ AIR = "{flow: {size: 1 1 m, cell: 0.1 m, density: 1 kg/m^3, viscosity: 1 Pa*s, i
 def test_check_tells_what_a_run_would(name, monkeypatch):
     monkeypatch.chdir(FOLDER)
     found = pipeline.errors_of_layout(pipeline.load(f"{name}.yaml"))
-    assert "\n\n".join(map(str, found)) == (FOLDER / f"{name}.txt").read_text().rstrip("\n")
+    told = (FOLDER / f"{name}.txt").read_text().rstrip("\n").split("\n\n")
+    assert list(map(str, found)) == [one for one in told if one.startswith("error")] != []
 
 
 def test_fluid_that_solids_close_off_fails_a_check(tmp_path):

@@ -257,16 +257,20 @@ solvers: {main: {rk4: {step: 1 ms}}}
     np.testing.assert_allclose([u[0], v[0]], [1, 3], atol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("change", "text"),
-    [(("0 1 0", "0 0.15 0"), "mass 0 of 'b' and mass 1 of 'b' overlap by 0.05 m"), (("exact", "exact"), "are elastic")],
-)
-def test_masses_that_cannot_collide_are_told(tmp_path, change, text):
-    pair = [("0 0 0", "0 0 0", 1), ("0 1 0", "0 0 0", 1)]
-    script = masses("exact", pair, 1, restitution=0.5).replace(*change)
-    script = script.replace("mode: exact", "mode: local") if "overlap" in text else script
+def test_masses_that_overlap_at_the_start_are_told_by_check_where_they_are_listed_else_by_the_run(tmp_path):
+    script = masses("local", [("0 0 0", "0 0 0", 1), ("0 0.15 0", "0 0 0", 1)], 1, restitution=0.5)
+    assert "'b.p0' and 'b.p1' overlap by 0.05 m at the start" in complaint(tmp_path, script)
+    listed = script[script.index("{list:") : script.index("}}", script.index("p1:")) + 3]
+    points = script.replace(listed, "{positions: [0 0 0 m, 0 0.15 0 m], radius: 0.1 m}")
+    assert complaint(tmp_path, points) == ""
+    with pytest.raises(ScriptError, match=r"mass 0 of 'b' and mass 1 of 'b' overlap by 0.05 m(.|\n)*scene.yaml:5"):
+        watch(tmp_path, points, [1], "b.energy")
+
+
+def test_masses_that_are_not_elastic_cannot_collide_exactly(tmp_path):
+    script = masses("exact", [("0 0 0", "0 0 0", 1), ("0 1 0", "0 0 0", 1)], 1, restitution=0.5)
     assert complaint(tmp_path, script) == ""
-    with pytest.raises(ScriptError, match=text + r"(.|\n)*scene.yaml:5"):
+    with pytest.raises(ScriptError, match=r"are elastic(.|\n)*scene.yaml:5"):
         watch(tmp_path, script, [1], "b.energy")
 
 

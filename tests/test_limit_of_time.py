@@ -18,6 +18,7 @@ LONG = """\
 clock: {end: 2 s}
 models:
   net: {mass_spring: {cloth: {cells: 3 3}, mass: 1 g, stiffness: 1e11 N/m, pins: [top]}}
+forces: [gravity]
 solvers: {main: {rk4: {step: 1e-10 s}}}
 outputs: {still: {image: {size: 32 18, time: 1 s}}}
 """
