@@ -26,6 +26,7 @@ LONGEST_TEX = 500
 _UNIT_BEHIND = re.compile(r"\}\s?((?:[µ°]?[A-Za-z]{1,3}|°)(?:[/*^][\w^]+)*)(?![\w(])")
 """A unit directly behind a value's braces."""
 _DOLLAR = re.compile(r"\$([^\W\d]\w*)")
+_TO_FIXED = re.compile(r"\$?\{([^{}]+?)\.toFixed\((\d)\)\}")
 _SIGN = re.compile(r"\$(\{[^{}]*\})")
 _LINK = re.compile(r"[^\W\d]\w*(?:\.\w+)+")
 PIECE = re.compile(r"\{\{|\}\}|\{(?P<inside>[^{}]*)\}|(?P<odd>[{}])")
@@ -52,6 +53,13 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
     if _LINK.fullmatch(text.strip()) is not None and names.gives(text.strip()):
         help = f'a text has its values in braces: write `{what}: "{{{text.strip()}:.2f}}"`'
         found.error("syntax", f"'{text.strip()}' would be drawn as it stands", node.span, help=help)
+        return None
+    if (fixed := _TO_FIXED.search(text)) is not None:
+        behind = re.match(r"\s?([^\W\d][\w/^*]*)?", text[fixed.end() :])
+        unit = f" {behind[1]}" if behind is not None and behind[1] else ""
+        rest = text[fixed.end() + (behind.end() if behind is not None and unit else 0) :]
+        help = f'write `{what}: "{text[: fixed.start()]}{{{fixed[1]}:.{fixed[2]}f{unit}}}{rest}"`'
+        found.error("syntax", f"'{fixed[0]}' would be drawn as it stands", node.span, help=help)
         return None
     pieces: list[str | TextValue] = []
     at, ok = 0, True

@@ -21,6 +21,7 @@ MOST_COPIES: Final = 10_000
 _MOST_HOPS: Final = 64
 _Known = dict[int, float | None]
 _NUMBERED = re.compile(r"(\w*?)_?[{[(<$%]+(\w+)[}\])>]*\w*?((?:[{[(<$%]+\w+[}\])>]*\w*)*)")
+_RATE = re.compile(r"(?:der|ddt|diff|deriv|derivative|dot|Dt|D)\((\w+)(?:, *t)?\)")
 _RANGE = re.compile(r"\b(?:range|linspace|arange)\(.*?(\w+)\W*\)")
 _APART: Final = {"spacing", "offset", "distance", "shift", "gap", "step"}
 _COPY = re.compile(r"(.+?)[._\[]\{?([^\W\d]\w*)\}?\]?\s*([-+]\s*\d+)?\]?")
@@ -46,6 +47,8 @@ class Repeat:
 
 def numbered(name: str) -> str | None:
     """The help for a name with an index in it, ``hook_{i}``, or a loop, ``for i in``; None for other names."""
+    if (rate := _RATE.fullmatch(name)) is not None:
+        return f"a rate stands under the name of its state: write `{rate[1]}` in its place, for d{rate[1]}/dt"
     if (found := _NUMBERED.fullmatch(name)) is not None:
         plain, index = found[1].rstrip("_") or "name", found[2]
         if found[3]:

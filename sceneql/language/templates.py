@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from collections.abc import Mapping as Table
 from collections.abc import Sequence as List
 from contextlib import suppress
@@ -30,12 +30,17 @@ _EQUALS = re.compile(r"(\w+)\s*:?=\s*(\S+(?:[ \t]\S+)*)")
 """A value given as in other languages, ``k = 10 N/m``, alone on its line."""
 
 
-def _instance(word: str, known: Collection[str]) -> str | None:
+def _instance(word: str, known: Table[str, Node]) -> str | None:
     """The help for a template that is called as a function of other languages, ``tree(at=[0, 0, 0], tall=1 m)``."""
     call = _INSTANCE.fullmatch(word.strip())
     if call is None or call[1] not in known:
         return None
     fields = _FIELD.sub(r"\1: ", call[2])
+    template = known[call[1]]
+    own = template.entries.get("fields") if isinstance(template, Mapping) else None
+    values = re.split(r",\s*(?![^(\[]*[)\]])", call[2])
+    if fields == call[2] and fields and isinstance(own, Mapping) and len(values) <= len(own.entries):  # by their order
+        fields = ", ".join(f"{name}: {value}" for name, value in zip(own.entries, values, strict=False))
     return f"write `{{{call[1]}: {{{fields}}}}}`" if fields != call[2] else f"write `{call[1]}`" if not fields else None
 
 
