@@ -104,6 +104,7 @@ def test_what_strikes_a_rim_has_the_impulse_of_its_normal(tmp_path, what):
     speed, restitution = 2.0, 0.5
     start, v = center + 0.2 * speed * normal, -speed * normal
     objects = {
+        "floor": "none",  # on which the drum would stand
         "drum": f"{{{DRUM}}}",
         "other": f"{{{shape}, position: {' '.join(map(repr, start.tolist()))} m}}}}",
     }
