@@ -47,7 +47,7 @@ class Account:
     """[m^2]"""
     boundary_edges: int
     folded: int
-    """Triangles that are folded over (``overturned``; for sharp meshes ``folds``)."""
+    """Triangles that are folded over (``told``; for sharp meshes ``folds``)."""
     unresolved: int
     """Number of cells in which surface may pass between corners of one sign."""
     unresolved_volume: float
@@ -113,11 +113,11 @@ def mesh(
         hidden, missed, folded = None, 0.0, 0
     else:
         from sceneql.mesh.bounded import bounded
-        from sceneql.mesh.repair.folds import folds, overturned
+        from sceneql.mesh.repair.folds import folds, told
 
         solid = _solid(shapes, task, name, moment)
         polygons, hidden, cell, missed = _of_solid(solid, task, name, moment.time, cell, tolerance, sharp)
-        folded = len((folds if sharp else overturned)(bounded(solid.tape, solid.low, solid.high), polygons))
+        folded = len((folds if sharp else told)(bounded(solid.tape, solid.low, solid.high), polygons))
         missed = missed if tolerance is not None and missed > tolerance else 0.0
         if solid.paint is not None:
             from sceneql.field.tape.tape_solid import paint_values

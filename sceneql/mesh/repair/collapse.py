@@ -31,10 +31,12 @@ def collapsed(tape: Tape, polygons: Polygons, folds: Rows, rest: Ints) -> Polygo
     """
     import numpy as np
 
+    outer = np.zeros(len(polygons.vertices), dtype=bool)
+    outer[rest] = True
     while 0 < len(folds) <= FEW:
         triangles = polygons.triangles.copy()
         for row in folds.tolist():
-            triangles = _without(tape, polygons, triangles, row)
+            triangles = _without(tape, polygons, triangles, row, outer)
         found = Polygons(polygons.vertices, triangles[triangles[:, 0] != triangles[:, 1]], polygons.normals)
         left = overturned(tape, found, rest)
         if len(left) >= len(folds):
@@ -43,10 +45,11 @@ def collapsed(tape: Tape, polygons: Polygons, folds: Rows, rest: Ints) -> Polygo
     return Polygons(polygons.vertices, np.ascontiguousarray(polygons.triangles), polygons.normals)
 
 
-def _without(tape: Tape, polygons: Polygons, triangles: Ints, row: int) -> Ints:
+def _without(tape: Tape, polygons: Polygons, triangles: Ints, row: int, outer: NDArray[np.bool_]) -> Ints:
     """The triangles (t, 3) with one edge at triangle ``row`` collapsed, where fewer around it then face inward.
 
-    An edge of it, or of a triangle beside it. Triangles that vanish have three times the same vertex.
+    An edge of it, or of a triangle beside it, at no vertex of the mask ``outer`` (v,), which has other triangles, too.
+    Triangles that vanish have three times the same vertex.
     """
     import numpy as np
 
@@ -55,11 +58,15 @@ def _without(tape: Tape, polygons: Polygons, triangles: Ints, row: int) -> Ints:
     beside = np.isin(triangles, triangles[row]).sum(axis=1) > 1
     best, most = triangles, (0, 0.0)
     for keep, gone in np.unique(triangles[beside][:, SIDES].reshape(-1, 2), axis=0).tolist():
+        if outer[keep] or outer[gone]:
+            continue
         around = np.flatnonzero((triangles == gone).any(axis=1))
         others = triangles[(triangles == keep).any(axis=1)]
         both = (triangles[around] == keep).any(axis=1)
         if both.sum() != 2 or len(np.intersect1d(triangles[around], others)) != 4:
             continue  # more in common than the two ends and the vertices opposite of the edge
+        if both.all():
+            continue  # two triangles back to back, of which nothing would be left
         moved = np.where(triangles[around[~both]] == gone, keep, triangles[around[~both]])
         before, after = (agreement(tape, polygons, corners) for corners in (triangles[around], moved))
         gain = int((before < 0.0).sum() - (after < 0.0).sum()), float(after.min(initial=1.0))

@@ -66,10 +66,22 @@ def overturned(tape: Tape, polygons: Polygons, rest: Ints | None = None) -> Rows
     if not len(rows):
         return rows
     facing_in = rows[facing(tape, polygons.vertices[polygons.triangles[rows]]) < 0.0]
-    right = at_jumps(tape, polygons, facing_in)
-    facing_in, rows = facing_in[~right], np.setdiff1d(rows, facing_in[right])
     found = np.union1d(inverted(polygons, facing_in, rest), wrinkles(polygons, facing_in))
     return np.union1d(found, turned_over(polygons, rows))
+
+
+def told(tape: Tape, polygons: Polygons) -> Rows:
+    """(n,) rows of ``overturned`` but for walls at which f jumps, where the gradient says nothing of what is outside.
+
+    Repairs take all of them, for these as they are.
+    """
+    import numpy as np
+
+    rows = overturned(tape, polygons)
+    right = np.zeros(len(rows), dtype=bool)
+    facing_in = facing(tape, polygons.vertices[polygons.triangles[rows]]) < 0.0
+    right[facing_in] = at_jumps(tape, polygons, rows[facing_in])
+    return rows[~right]
 
 
 def at_jumps(tape: Tape, polygons: Polygons, rows: Rows) -> NDArray[np.bool_]:
