@@ -307,11 +307,9 @@ class Tie(Interaction):
         "`world`."
     )
     breaks: Annotated[float, Quantity(FORCE)] | None = field(
-        "Force above which it is gone: at that instant where a tolerance chooses the steps and nothing collides, else "
-        "at the end of a step of at most 1/240 s; by default never.",
-        None,
-        above=0,
-    )
+        "Force above which it is gone, by default never: at once where a tolerance chooses steps and nothing collides, "
+        "else at a step's end, within 1/240 s.", None, above=0
+    )  # fmt: skip
 
     def problems(self) -> Iterable[Problem]:
         """The world held to itself."""

@@ -24,7 +24,6 @@ _MOST_SHOWN: Final = 160
 _CLOSES: Final = {"(": ")", "[": "]", "{": "}"}
 _COLOR = re.compile(r"#(?:[0-9a-fA-F]{8}|[0-9a-fA-F]{6}|[0-9a-fA-F]{3,4})(?![^\s,\]}])")
 _SWALLOWED = re.compile(rf"[ \t]+({_COLOR.pattern})")
-_SPACE = re.compile(r"(?:\s+#[^\n]*|\s)*")
 _PROPERTY = re.compile(r"[&!][^\s,\[\]{}]*\s*")
 _QUOTED = re.compile(r"\"(?:[^\"\\]|\\.)*\"|'(?:[^']|'')*'", re.DOTALL)
 _CALLED = re.compile(r"(\w+)\(")

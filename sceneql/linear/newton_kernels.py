@@ -251,7 +251,7 @@ def converge(functions, t, a, base, y0, y, scratch, jacobian, store, scales, mem
         # Steps of a given length have no other error estimate: there, the contraction must come from two updates.
         done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
         done = done or (since > 0 and max(size, before) <= noise)
-        # The systems of fields damp: the next change is no larger than what is left over now.
+        # Fields damp, or grow by far less than 1/TINY in a stage: the next change is not much beyond what is left now.
         if plan[ROUNDED] == 1 and not done and size < math.inf:
             done = largest(residual, y0, y, memory) <= TINY
         # Where a few masses still buckle, by less than the tolerance, the largest update does not predict the next.

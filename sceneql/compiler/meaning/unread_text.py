@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
 from sceneql.compiler.meaning.facts import Facts, constant
 from sceneql.graph import Task
@@ -62,7 +63,9 @@ def _never(task: Task, facts: Facts, found: Diagnostics) -> None:
         found.warning("not-shown", text, task.span, help="write a shorter `fade`, as `fade: 0.5 s`")
 
 
-def _time(now: float):  # type: ignore[no-untyped-def]
+def _time(now: float) -> Callable[[object], float]:
+    """What a formula of the time alone reads at an instant. Raises KeyError for anything else."""
+
     def look_up(node: object) -> float:
         if getattr(node, "name", "") != TIME_SYMBOL:
             raise KeyError(node)
