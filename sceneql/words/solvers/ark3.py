@@ -36,7 +36,7 @@ class Ark3(Solver):
     def stepper(self) -> Stepper:
         """By the tolerance, or fixed steps."""
         if self.skins == "implicit":
-            from sceneql.skins import stiff_step
+            from sceneql.skins.stiff import stiff_step
 
             return stiff_step.stepper(self.tolerance, self.step, self.largest_step)
         from sceneql.flows.schemes import additive

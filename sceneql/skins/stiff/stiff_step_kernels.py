@@ -40,7 +40,7 @@ from sceneql.flows.schemes.additive_kernels import (
 )
 from sceneql.flows.schemes.operators_kernels import OPERATOR, same, solve, spread, tally
 from sceneql.grids.multigrid.stencil_kernels import dot
-from sceneql.skins.stiff_lines_kernels import (
+from sceneql.skins.stiff.stiff_lines_kernels import (
     SIDES,
     apart,
     by_law,

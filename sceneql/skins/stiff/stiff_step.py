@@ -11,7 +11,7 @@ from sceneql.flows.layout import LED
 from sceneql.flows.schemes import additive
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.skins.skin_layout import COUNT, FLOW, HELD_AT, POSITION_AT
-from sceneql.skins.stiff_step_kernels import ROWS, STATE
+from sceneql.skins.stiff.stiff_step_kernels import ROWS, STATE
 
 if TYPE_CHECKING:
     from sceneql.island.system import System
@@ -27,8 +27,8 @@ def stepper(tolerance: float, step: float | None, largest: float | None) -> Step
     made = additive.stepper(tolerance, step, largest)
     return replace(
         made,
-        method=replace(made.method, step="sceneql.skins.stiff_step_kernels:step"),
-        needs=replace(made.needs, prepare="sceneql.skins.stiff_step:prepare"),
+        method=replace(made.method, step="sceneql.skins.stiff.stiff_step_kernels:step"),
+        needs=replace(made.needs, prepare="sceneql.skins.stiff.stiff_step:prepare"),
     )
 
 

@@ -1,0 +1,1 @@
+"""Skins whose tensions are solved for."""
