@@ -1,1 +1,1 @@
-"""Skins whose tensions are solved for."""
+"""Skins of tensions solved for."""
