@@ -49,7 +49,7 @@ def each_of_all(assembly: Assembly, value: Value, counts: Sequence[int], what: s
         return [(at + before, 1) for before in accumulate((0, *counts[:-1]))]
     if given != 1 and any(given != count for count in counts) and len(counts) > 1:
         text = f"{given} {what}s are given for {' and '.join(str(count) for count in counts)} masses"
-        help = f"give one {what} for all, or a list of {all_of_them}, one for each mass of the first model, then of the next"
+        help = f"give one {what} for all, or a list of {all_of_them}, with those of the first model first"
         raise ScriptError([Diagnostic("list-length", text, value.span, help)])
     return [each(assembly, value, count, what) for count in counts]
 

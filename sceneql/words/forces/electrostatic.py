@@ -28,7 +28,9 @@ class Electrostatic(Force):
 
     mutual: ClassVar[bool] = True
 
-    charge: Charges = field("Charge of every mass, or a list with one for each, those of the first model first (the order of `on`).")
+    charge: Charges = field(
+        "Charge of every mass, or a list with one for each, those of the first model first (the order of `on`)."
+    )
     constant: Annotated[Value, Quantity(dim.FORCE * dim.AREA / CHARGE**2)] = field(
         "Coulomb's constant k.", "8.9875517862e9 N*m^2/C^2"
     )
