@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from numpy import float32, uint8
     from numpy.typing import NDArray
 
-BAND = 16
+BAND = 64
 """Number of pixel rows that a thread develops at a time."""
 
 

@@ -44,6 +44,11 @@ class Buffers:
             self._linear = np.empty_like(self._linear)
         return self._linear
 
+    def radiance_as_linear(self) -> NDArray[float32]:
+        """The radiance (h w, 3) as the picture, without a copy: the next picture's goes elsewhere."""
+        self.radiance, self._linear = self.linear(), self.radiance
+        return self._linear
+
 
 ALONE = 2
 """Reference count of an array held by one attribute: the attribute and getrefcount's argument. Views add to it."""

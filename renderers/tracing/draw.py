@@ -19,7 +19,7 @@ from renderers.tracing.filter.spread_kernels import ROOM, spread_sky
 from renderers.tracing.light.sampling_kernels import subpixels
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT
 from renderers.tracing.pack import pack
-from renderers.tracing.picture import Picture, over_rows
+from renderers.tracing.picture import BROAD, Picture, over_rows
 from renderers.tracing.solids.packet_choice import lender, packets_for
 from renderers.tracing.sprites import over
 from renderers.tracing.tiles_kernels import choose, reach
@@ -106,7 +106,7 @@ def draw(
     elif samples > 1:
         over_rows(height, lay_keys)
     doubted = undecided if undecided <= DOUBTED * width * height else 0
-    linear = buffers.linear()
+    linear = buffers.linear() if samples > 1 else buffers.radiance_as_linear()
     points = subpixels(samples)
 
     def smooth(start: int, stop: int) -> None:
@@ -115,8 +115,6 @@ def draw(
 
     if samples > 1:
         over_rows(height, smooth, "tracing rays at edges")
-    else:
-        linear[:] = buffers.radiance
     over(frame, buffers.records[0], linear, scene, rows)
     put_back(buffers)
     return Picture(linear.reshape(height, width, 3), undecided, unsearched)
@@ -139,7 +137,7 @@ def _soften(with_waves: Callable[..., None], buffers: Buffers, layers: Sequence[
             with_waves(lambda w, own=own: w.soften(*own))
 
     for stage in (look, sample):
-        over_rows(height, stage)
+        over_rows(height, stage, band=BROAD)
 
 
 def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int) -> None:

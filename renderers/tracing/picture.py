@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 BAND = 16
 """Number of pixel rows that a thread takes at a time."""
+BROAD = 4 * BAND
+"""Number of rows of stages that do little for each pixel: what comes between their kernels finds the caches cold."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,14 +32,14 @@ class Picture:
     """Number of rays that were not searched, since the search of others at the same object had led nowhere."""
 
 
-def over_rows(height: int, work: Callable[[int, int], object], what: str = "") -> None:
+def over_rows(height: int, work: Callable[[int, int], object], what: str = "", band: int = BAND) -> None:
     """Call ``work(start, stop)`` for bands of rows, on the thread pool; ``what`` it does is told with how far it is."""
-    bands = -(-height // BAND)
+    bands = -(-height // band)
     with doing(what) if what else nullcontext() as deed:
         done = iter(range(1, bands + 1))
 
-        def one(band: int) -> None:
-            work(band * BAND, min(band * BAND + BAND, height))
+        def one(number: int) -> None:
+            work(number * band, min(number * band + band, height))
             if deed is not None:
                 deed.what = f"{what}, {100 * next(done) // bands} %"
 

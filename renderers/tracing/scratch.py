@@ -29,8 +29,10 @@ def begun(memory: Floats) -> Floats:
 
 def given_up(memory: Floats, shapes: int) -> int:
     """How many rays at so many shapes were not searched since ``begun``, after MOST_LOST had been LOST at the same."""
-    lost = memory[-1 - shapes : -1, layout.LOST] - layout.MOST_LOST
-    return int(lost[lost > 0.0].sum())
+    lost = memory[-1 - shapes : -1, layout.LOST]
+    if not lost.size or lost.max() <= layout.MOST_LOST:  # as good as always
+        return 0
+    return int((lost - layout.MOST_LOST).clip(min=0.0).sum())
 
 
 def patient(memory: Floats) -> Floats:

@@ -45,6 +45,8 @@ class Reserved:
     _numbers: list[Floats] = field(init=False, default_factory=lambda: [np.zeros(channels.HEAD)])
     _stored: int = field(init=False, default=channels.HEAD)
     _room: Floats = field(init=False, default_factory=lambda: np.zeros(0))
+    _scratch: dict[int, int] = field(init=False, default_factory=dict)
+    """Offsets of what `scratch` returns, by size."""
     _rests: list[tuple[int, Floats]] = field(init=False, default_factory=list)
     _matrices: dict[int, Any] = field(init=False, default_factory=dict)
     """Mass matrices by the offset of the velocities, and matrices of `capacity` by that of their entries."""
@@ -125,6 +127,12 @@ class Reserved:
         self._numbers.append(numbers)
         self._stored += len(numbers)
         return first
+
+    def scratch(self, size: int) -> int:
+        """Floats that every word may overwrite (system.Assembly)."""
+        if size not in self._scratch:
+            self._scratch[size] = self.floats(np.zeros(size))
+        return self._scratch[size]
 
     def write(self, at: int, values: Any) -> None:
         """Overwrite stored numbers (system.Assembly)."""

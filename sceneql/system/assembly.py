@@ -47,6 +47,9 @@ class Assembly(Protocol):
     def floats(self, values: Any) -> int:
         """Store numbers in the floats; returns the offset of the first."""
 
+    def scratch(self, size: int) -> int:
+        """Offset of so many floats that kernels of every word may overwrite, and none finds again in its next call."""
+
     def write(self, at: int, values: Any) -> None:
         """Overwrite floats[at : at + len(values)], which were stored before."""
 

@@ -55,25 +55,26 @@ def is_cut(records, visibility, column, k, x, y, width, height):
 
 @kernel(_i(_i, _i, _i, MARKS, _rows, _rows, _many), _nrt=False)
 def list_cuts(start, stop, width, busy, records, visibility, cuts):
-    """List the pixels of rows start..stop, at most TILE, that edges of shadows run through, and of which lights.
+    """List the pixels of rows start..stop, from a multiple of TILE on, that edges of shadows run through.
 
-    That is in ``cuts`` pixel times number of lights plus light; returns how many there are.
+    And of which lights: in ``cuts`` is pixel times number of lights plus light. Returns how many there are.
     """
     height, lights, n = len(records) // width, (visibility.shape[1] - FIRST_LIGHT) // 2, 0
-    for tile in range(busy.shape[1] if lights > 0 else 0):
-        row = start // TILE
-        if busy[row, tile] == 0 or busiest(busy, row, tile, tile) < LOSSY:  # all of all lights is seen, around it too
-            continue
-        for y in range(start, stop):
-            for x in range(tile * TILE, min((tile + 1) * TILE, width)):
-                k = y * width + x
-                for l in range(lights):
-                    column = FIRST_LIGHT + 2 * l
-                    if not may_be_cut(visibility, column, k, x, y, width, height) or records[k, OWNER] == 0.0:
-                        continue
-                    if is_cut(records, visibility, column, k, x, y, width, height):
-                        cuts[n] = k * lights + l
-                        n += 1
+    for row in range(start // TILE, -(-stop // TILE) if lights > 0 else 0):
+        for tile in range(busy.shape[1]):
+            # All of all lights is seen, around it too.
+            if busy[row, tile] == 0 or busiest(busy, row, tile, tile) < LOSSY:
+                continue
+            for y in range(row * TILE, min((row + 1) * TILE, stop)):
+                for x in range(tile * TILE, min((tile + 1) * TILE, width)):
+                    k = y * width + x
+                    for l in range(lights):
+                        column = FIRST_LIGHT + 2 * l
+                        if not may_be_cut(visibility, column, k, x, y, width, height) or records[k, OWNER] == 0.0:
+                            continue
+                        if is_cut(records, visibility, column, k, x, y, width, height):
+                            cuts[n] = k * lights + l
+                            n += 1
     return n
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from renderers.tracing.scene_kernels import Scene
-    from sceneql.frame import Floats, Shape, Tape
+    from sceneql.frame import Floats, Ints, Shape, Tape
 
 
 _of_thread = threading.local()
@@ -44,6 +45,25 @@ def _memory(tape: Tape, kept: list[Memory]) -> Memory:
     return Memory(tape, RAYS, clip_rows(tape))
 
 
+@lru_cache(maxsize=4)
+def own_tapes(tapes: tuple[Tape | None, ...]) -> tuple[Ints, Ints, Floats]:
+    """The shapes' tapes in their own coordinates, for ``skins_kernels.own_tape``: (n, 6) ranges, integers, reals.
+
+    Ranges are 0 for None.
+    """
+    ranges = np.zeros((len(tapes), 6), dtype=np.int32)
+    codes, numbers = [np.empty(0, dtype=np.int32)], [np.empty(0)]
+    at = last = 0
+    for row, tape in zip(ranges, tapes, strict=True):
+        if tape is not None:
+            count, some = len(tape.constants), len(tape.parts)
+            row[:] = at, len(tape.code), last, count, last + count, some
+            codes.append(tape.code.ravel())
+            numbers += [tape.constants, tape.parts.ravel()]
+            at, last = at + tape.code.size, last + count + tape.parts.size
+    return ranges, np.concatenate(codes), np.concatenate(numbers)
+
+
 class Packets:
     """Memory of one thread to intersect rays with implicit solids; ``solids``: their indices among ``shapes``."""
 
@@ -52,10 +72,14 @@ class Packets:
         kept = list(getattr(_of_thread, "memories", ()))
         self.memories: list[Memory] = []
         self.bounds: list[tuple[Floats, ...]] = []
+        own: list[Tape | None] = [None] * len(shapes)
+        matrices = np.zeros((len(shapes), 12))
         for i in self.solids:
             shape = shapes[i]
             assert isinstance(shape, Implicit)
             tape, matrix = in_own_coordinates(shape.tape)
+            if tape is not shape.tape:
+                own[i], matrices[i] = tape, matrix.ravel()
             self.memories.append(_memory(tape, kept))
             box, clips = np.array([shape.low, shape.high], dtype=np.float64), clips_of(shape.tape)
             reach = float(np.abs(box).max()) ** np.array([2.0] * 6 + [1.0] * 3 + [0.0])
@@ -68,7 +92,7 @@ class Packets:
         tapes = [shape.tape for i in solids if isinstance(shape := shapes[i], Implicit)]
         tapes += [shape.paint for i in solids if isinstance(shape := shapes[i], Implicit) and shape.paint is not None]
         rows, parts = max(len(tape.code) for tape in tapes), max(len(tape.parts) for tape in tapes)
-        memory = lined((rows, LANES)), lined((rows, 3, LANES)), lined((3, LANES))
+        memory = lined((rows, LANES)), lined((rows, 3, LANES)), lined((6, LANES))
         bases = np.full(len(shapes), -1)
         blocks = [(i, one.blocks) for i, one in zip(solids, self.memories, strict=True) if one.blocks is not None]
         at = 0
@@ -77,7 +101,8 @@ class Packets:
         every = np.concatenate([np.zeros((BLOCKS, 1), dtype=np.float32), *(one for _, one in blocks)], axis=1)
         bases[bases >= 0] += 1
         listed = np.empty(parts, dtype=np.int64)
-        self.of_skins = *memory, np.empty((2, rows, 4), dtype=np.int32), np.empty((parts, 8)), every, bases, listed
+        lists = np.empty((2, rows, 4), dtype=np.int32), np.empty((parts, 8)), every, bases, listed
+        self.of_skins = *memory, *lists, matrices, *own_tapes(tuple(own))
 
     def asked(self, rays: int) -> Floats:
         """Empty list of rays (1 + rays, columns); see scene_kernels.ASKED."""

@@ -63,8 +63,8 @@ class Driven(Joint):
         from sceneql.system import Place
 
         kind, vectors = self.motion(first, second, assembly)
-        numbers, scratch = assembly.floats(vectors), assembly.floats(np.zeros(2 * MOVED + ROW))
-        row = (POINT if kind == "shift" else ANGLE, 0, 0, numbers, scratch + 2 * MOVED, holds)
+        numbers, scratch = assembly.floats(vectors), assembly.scratch(2 * MOVED)
+        row = (POINT if kind == "shift" else ANGLE, 0, 0, numbers, assembly.floats(np.zeros(ROW)), holds)
         motor = self.driver()
         force = motor.most if motor is not None and motor.follows == "nothing" else None
         none = assembly.floats([0.0])

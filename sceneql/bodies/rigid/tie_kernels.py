@@ -38,11 +38,12 @@ from sceneql.bodies.rigid.tie_matrix_kernels import (
     begin_matrix,
     end_matrix,
     factor_filled,
-    solve,
+    solve_from,
 )
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_A,
     AT_BIAS,
+    AT_C,
     AT_FORCE,
     AT_IMPULSE,
     AT_MASS,
@@ -110,9 +111,11 @@ def write_tie(floats, which, moved):
         to += ROW
 
 
-@lean(types.void(F, A, A, I))
+@lean(F(F, A, A, I))
 def survey(t, y, floats, ints):
-    """Write the movers and the rows for a state."""
+    """Write the movers, at no acceleration, and the rows for a state; the largest gap of a row, against the numbers
+    that it is the difference of."""
+    worst = 0.0
     for tie in range(ints[TIES]):
         which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
         if tie + AHEAD < ints[TIES]:
@@ -122,6 +125,13 @@ def survey(t, y, floats, ints):
                 m = which[ONE + side]
                 see(y, floats, ints[MOVED_AT] + MOVED * m, ints, ints[MOVERS_AT] + MOVER * m)
         write_tie(floats, which, ints[MOVED_AT])
+        to = which[ROWS_FROM]
+        for _ in range(which[ROWS_OF]):
+            gap, size = abs(floats[to + AT_C]), max(floats[to + AT_SIZE], 1e-300)
+            if gap > worst * size:
+                worst = gap / size
+            to += ROW
+    return worst
 
 
 @lean(F(A, I, N, N, N, N, A))
@@ -204,27 +214,36 @@ def push(floats, ints, right, further):
             move_by(mover)
 
 
-@lean(types.void(A, I, N, N, F))
-def correct(floats, ints, target, size_at, worst):
-    """`balance` where the matrix, and on the right hand side what remains, ``worst`` at most, are written already."""
+@lean(types.void(A, I, N, N, F, N, types.boolean))
+def refine(floats, ints, target, size_at, worst, most, begun):
+    """The forces of `balance` by the factors that there are, in at most so many corrections.
+
+    ``worst`` remains at first, as `remaining` left it on the right hand side; ``begun``: as for `solve_from`.
+    """
     right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
     last, found = math.inf, False
     little = LEFT * max(1.0, ints[ROWS] / LONG)
-    least = factor_filled(floats, ints)
-    sure = size_at != AT_SIZE and least * max(1.0, ints[ROWS] / SHORT) ** 3 > WELL
-    most = 0 if least == 0.0 else 1 if sure else MOST_CORRECTIONS
     for corrections in range(most):
         if corrections > 0:
             worst = remaining(floats, ints, target, size_at)
         if worst <= little or (corrections >= FEW and worst > GAIN * last):
             break
         last = worst
-        solve(floats, ints)
+        solve_from(floats, ints, begun and not found)
         push(floats, ints, right, found)
         found = True
     if not found:
         for k in range(ints[ROWS]):
             floats[ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH] + AT_FORCE] = 0.0
+
+
+@lean(types.void(A, I, N, N, F))
+def correct(floats, ints, target, size_at, worst):
+    """`balance` where the matrix, and on the right hand side what remains, ``worst`` at most, are written already."""
+    least = factor_filled(floats, ints)
+    sure = size_at != AT_SIZE and least * max(1.0, ints[ROWS] / SHORT) ** 3 > WELL
+    most = 0 if least == 0.0 else 1 if sure else MOST_CORRECTIONS
+    refine(floats, ints, target, size_at, worst, most, True)
 
 
 @lean(types.void(A, I, N, N))

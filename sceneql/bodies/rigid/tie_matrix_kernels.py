@@ -17,8 +17,9 @@ from sceneql.linear.multifrontal import layout
 from sceneql.system.signatures_kernels import A, F, I, N
 
 # Compiled at the first system of many rows, or of few.
-factor_sparse = lazy("sceneql.linear.multifrontal.symmetric_kernels:factor_symmetric", types.boolean(I, A, A, A))
-solve_sparse = lazy("sceneql.linear.multifrontal.solve_kernels:solve_symmetric", types.void(I, A, A, A))
+SPARSE = "sceneql.linear.multifrontal.factor_solve_kernels"
+factor_sparse = lazy(f"{SPARSE}:factor_up", F(I, A, A, A, A, A))
+solve_sparse = lazy(f"{SPARSE}:solve_after", types.void(I, A, A, A, types.boolean))
 factor_dense = lazy("sceneql.linear.dense_symmetric_kernels:factor", F(A, N, N, F))
 solve_dense = lazy("sceneql.linear.dense_symmetric_kernels:solve", types.void(A, N, N, A))
 
@@ -192,24 +193,12 @@ def fill(floats, ints, part):
     end_matrix(floats, ints, part)
 
 
-@lean_inlined
-def least_pivot(diagonal, factors, plan):
-    """The least part of its diagonal that a pivot of sparse factors is; 0 where one is not above 0."""
-    least, order = 1.0, plan[plan[2] : plan[2] + plan[0]]
-    for s in range(plan[1]):
-        t = layout.HEAD + layout.FIELDS * s
-        first, width, height, panel = plan[t], plan[t + 1], plan[t + 2], plan[t + 5]
-        for k in range(width):
-            inverse = factors[panel + k * (height + 1)]
-            least = min(least, 1.0 / (inverse * diagonal[order[first + k]])) if inverse > 0.0 else 0.0
-    return least
-
-
 @lean(F(A, I, F))
 def factor_with(floats, ints, part):
     """Factor J T, with a part of its diagonal added; the least part of it that a pivot is, at most what is added.
 
-    0 where the matrix cannot be factored, or, without what is added, where rows depend.
+    0 where the matrix cannot be factored, or, without what is added, where rows depend. If the matrix is not whole, the
+    first half of `solve` is done, too.
     """
     values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
     if ints[FACTORS] == 0:
@@ -218,10 +207,11 @@ def factor_with(floats, ints, part):
     plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
     factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
     work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
-    if not factor_sparse(plan, values, factors, work):
-        return 0.0
     diagonal = floats[ints[DIAGONAL_AT] : ints[DIAGONAL_AT] + ints[ROWS]]
-    least = part if part > 0.0 else least_pivot(diagonal, factors, plan)
+    right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
+    least = factor_sparse(plan, values, factors, work, diagonal, right)
+    if part > 0.0:
+        return part if least >= 0.0 else 0.0
     return least if least > DEPENDENT else 0.0
 
 
@@ -246,9 +236,9 @@ def factor(floats, ints):
     return factor_filled(floats, ints)
 
 
-@lean(types.void(A, I))
-def solve(floats, ints):
-    """Solve with the factors, in place."""
+@lean(types.void(A, I, types.boolean))
+def solve_from(floats, ints, begun):
+    """Solve with the factors, in place; ``begun``: for the right hand side that there was when they were made."""
     right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
     if ints[FACTORS] == 0:
         solve_dense(floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]], ints[ROWS], stride(ints), right)
@@ -256,4 +246,10 @@ def solve(floats, ints):
     plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
     factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
     work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
-    solve_sparse(plan, factors, right, work)
+    solve_sparse(plan, factors, right, work, begun)
+
+
+@lean_inlined
+def solve(floats, ints):
+    """Solve with the factors, in place."""
+    solve_from(floats, ints, False)

@@ -3,12 +3,24 @@
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_kernels import balance, clear, survey
-from sceneql.bodies.rigid.tie_matrix_kernels import MOVED_AT, MOVERS, MOVERS_AT, ROWS, ROWS_AT
+from sceneql.bodies.rigid.tie_kernels import MOST_CORRECTIONS, balance, clear, refine, remaining, survey
+from sceneql.bodies.rigid.tie_matrix_kernels import (
+    MOVED_AT,
+    MOVERS,
+    MOVERS_AT,
+    ONE,
+    OTHER,
+    ROWS,
+    ROWS_AT,
+    ROWS_FROM,
+    ROWS_OF,
+    SIDES,
+    TIES,
+    TIES_AT,
+)
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_A,
     AT_C,
-    AT_J,
     AT_OPEN,
     AT_PUSHED,
     AT_SIZE,
@@ -16,34 +28,26 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_TWIST,
     AT_V,
     AT_W,
-    FIRST,
     MOMENTUM,
     MOVED,
     MOVER,
     POSITION,
     ROTATION,
+    ROW,
     ROW_INTS,
     SCRATCH,
     VELOCITY,
 )  # fmt: skip
-from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.system.signatures_kernels import AFTER_STEP, A, I, N
+from sceneql.compiled.kernels import lean
+from sceneql.system.signatures_kernels import AFTER_STEP, A, F, I, N
 
 CLOSED = 1e-14
 """Gap of a row, against the numbers that it is the difference of, below which it is rounding."""
 MOST_CLOSINGS = 6
+SLIGHT = 1e-8
+"""Such a gap up to which the factors of the ties' matrix before it is closed serve for the speeds after that."""
 OPENED = 1e-6
 """Such a gap from which a tie counts as one that cannot be held."""
-
-
-@lean_inlined
-def open_by(floats, ints, at):
-    """The largest gap of a row, against the numbers that it is the difference of."""
-    worst = 0.0
-    for k in range(ints[ROWS]):
-        to = ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH]
-        worst = max(worst, abs(floats[to + at]) / max(floats[to + AT_SIZE], 1e-300))
-    return worst
 
 
 @lean(types.void(A, A, I, N, N))
@@ -71,16 +75,36 @@ def shift(y, floats, ints):
         shift_mover(y, floats, ints, ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m)
 
 
+@lean(F(A, I))
+def weigh_speeds(floats, ints):
+    """Write the size of what the AT_SPEED of each row is a sum of to AT_SIZE; the largest speed against that."""
+    worst = 0.0
+    for tie in range(ints[TIES]):
+        which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
+        first, second, to = ints[MOVED_AT] + MOVED * which[ONE], ints[MOVED_AT] + MOVED * which[OTHER], which[ROWS_FROM]
+        one, two = floats[first : first + MOVED], floats[second : second + MOVED]
+        for _ in range(which[ROWS_OF]):
+            own = floats[to : to + ROW]
+            size = 0.0
+            for c in range(3):
+                size += abs(own[c] * one[AT_V + c]) + abs(own[3 + c] * one[AT_W + c])
+                size += abs(own[6 + c] * two[AT_V + c]) + abs(own[9 + c] * two[AT_W + c])
+            own[AT_SIZE] = size
+            if abs(own[AT_SPEED]) > worst * size:
+                worst = abs(own[AT_SPEED]) / size
+            to += ROW
+    return worst
+
+
 @lean(AFTER_STEP, inner=True)
 def settle(t0, t1, y0, rate0, y1, floats, ints):
     """Closes the ties: places and rotations first, then velocities, each by the least change (in energy)."""
-    changed, gap = False, 0.0
+    changed, gap, before = False, 0.0, 1.0
     for _ in range(MOST_CLOSINGS):
-        survey(t1, y1, floats, ints)
-        gap = open_by(floats, ints, AT_C)
+        gap = survey(t1, y1, floats, ints)
         if gap <= CLOSED:
             break
-        clear(floats, ints)
+        before = gap
         balance(floats, ints, AT_C, AT_SIZE)
         shift(y1, floats, ints)
         changed = True
@@ -89,22 +113,13 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
             to = ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH]
             if abs(floats[to + AT_C]) > OPENED * floats[to + AT_SIZE]:
                 floats[to + AT_OPEN] = max(floats[to + AT_OPEN], abs(floats[to + AT_C]))
-    worst = 0.0
-    for k in range(ints[ROWS]):
-        row = ints[ROWS_AT] + ROW_INTS * k
-        to = ints[row + SCRATCH]
-        size = 0.0
-        for side in range(2):
-            mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side]
-            for c in range(3):
-                size += abs(floats[to + AT_J + 6 * side + c] * floats[mover + AT_V + c])
-                size += abs(floats[to + AT_J + 6 * side + 3 + c] * floats[mover + AT_W + c])
-        floats[to + AT_SIZE] = size
-        if abs(floats[to + AT_SPEED]) > worst * size:
-            worst = abs(floats[to + AT_SPEED]) / size
-    if worst > CLOSED:
-        clear(floats, ints)
-        balance(floats, ints, AT_SPEED, AT_SIZE)
+    if weigh_speeds(floats, ints) > CLOSED:
+        if gap > CLOSED:  # nothing was surveyed behind the last closing
+            clear(floats, ints)
+        if before <= SLIGHT and gap <= CLOSED:
+            refine(floats, ints, AT_SPEED, AT_SIZE, remaining(floats, ints, AT_SPEED, AT_SIZE), MOST_CORRECTIONS, False)
+        else:
+            balance(floats, ints, AT_SPEED, AT_SIZE)
         for m in range(ints[MOVERS]):
             at = ints[MOVERS_AT] + MOVER * m
             mover = ints[MOVED_AT] + MOVED * m

@@ -75,7 +75,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         [*chain(*heads)],
     ]
     begins = np.cumsum([kernels.HEAD, *(len(some) for some in lists)]).tolist()
-    spent = (0, 0) if matrix.plan is None else (matrix.plan.factors, matrix.plan.work + len(rows))
+    spent = (0, 0) if matrix.plan is None else (matrix.plan.factors, 2 * (matrix.plan.work + len(rows)))
     sizes = (MOVED * len(movers), matrix.size, *spent, len(rows))
     moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
     for at in matrix.alone:

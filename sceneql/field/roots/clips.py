@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sceneql.field.tape import tape_ops as ops
+from sceneql.field.tape.own_coordinates import in_own_coordinates
 from sceneql.field.tape.plans import root_of, without_factor
 
 if TYPE_CHECKING:
@@ -29,7 +30,11 @@ def clips_of(tape: Tape) -> Floats:
 
     In the order x^2, y^2, z^2, xy, yz, zx, x, y, z, 1; computed with rounding errors.
     """
-    return np.array([quadric for quadric, _ in _clips(tape)]).reshape(-1, LAST + 1)
+    own, matrix = in_own_coordinates(tape)
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = np.array([_seen_from(quadric, matrix) for quadric, _ in _clips(own)]).reshape(-1, LAST + 1)
+    small: Floats = found[np.abs(found).max(axis=1) <= LARGEST]
+    return small
 
 
 def clip_rows(tape: Tape) -> list[int]:
@@ -52,6 +57,18 @@ def branches(tape: Tape) -> list[int]:
             rows += map(int, tape.code[inner, 1:3])
         else:
             found.append(row)
+    return found
+
+
+def _seen_from(quadric: Floats, matrix: Floats) -> Floats:
+    """Coefficients (10,) of q(A (p, 1)), of q in the coordinates into which the ``matrix`` A (3, 4) maps p."""
+    form = np.zeros((4, 4))
+    i, j = PRODUCTS
+    form[i, j] = 0.5 * quadric[:LINEAR]
+    form[:3, 3], form[3, 3] = 0.5 * quadric[LINEAR:LAST], 0.5 * quadric[LAST]
+    whole = np.vstack([matrix, [0.0, 0.0, 0.0, 1.0]])
+    form = whole.T @ (form + form.T) @ whole
+    found: Floats = form[(*i, 0, 1, 2, 3), (*j, 3, 3, 3, 3)] * ([1.0] * 3 + [2.0] * 6 + [1.0])
     return found
 
 

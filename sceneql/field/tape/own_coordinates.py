@@ -24,20 +24,27 @@ LEAST = 1e-9
 """Determinant of three unit vectors below which they count as coplanar."""
 
 
-@lru_cache(maxsize=16)
+_made: list[Tape] = []
+"""The last tapes in their own coordinates: an object in rigid motion gets the same one each time, and whatever else is
+kept by tape is found again."""
+KEPT = 16
+
+
+@lru_cache(maxsize=KEPT)
 def in_own_coordinates(tape: Tape) -> tuple[Tape, Floats]:
     """(tape g, A (3, 4)) with f(p) = g(A (p, 1)); the tape itself and the identity where f has no such coordinates.
 
-    For an object in rigid motion g is the same at all times, with the same constants.
+    For an object in rigid motion g is the same tape at all times, with the same constants.
     """
     same = tape, np.eye(3, 4)
     forms = _affine_rows(tape)
-    seen = sorted({row for k in range(len(tape.code)) if k not in forms for row in _operands(tape, k) if row in forms})
-    seen = [row for row in seen if forms[row][:3].any()]
-    axes: dict[bytes, int] = {}
-    for row in seen:
-        axes.setdefault((forms[row] + 0.0).tobytes(), len(axes))  # makes -0.0 and 0.0 the same key
-    if len(axes) != 3:
+    for seen in (_seen(tape, forms), _seen_first(tape, forms)):
+        axes: dict[bytes, int] = {}
+        for row in seen:
+            axes.setdefault((forms[row] + 0.0).tobytes(), len(axes))  # makes -0.0 and 0.0 the same key
+        if len(axes) == 3:
+            break
+    else:
         return same
     matrix = np.array([np.frombuffer(form) for form in axes])
     lengths = np.linalg.norm(matrix[:, :3], axis=1)
@@ -47,7 +54,47 @@ def in_own_coordinates(tape: Tape) -> tuple[Tape, Floats]:
     for row in seen:
         code[row] = ops.X + axes[(forms[row] + 0.0).tobytes()], 0, 0, 0
     own = replace(tape, code=code)
-    return _with_its_own_constants(replace(own, code=tape_of_rows(own, [len(code) - 1]))), matrix
+    return _kept(_with_its_own_constants(replace(own, code=tape_of_rows(own, [len(code) - 1])))), matrix
+
+
+def _kept(tape: Tape) -> Tape:
+    """The tape, or an equal one that was made before."""
+    for known in list(_made):
+        if known.code.shape == tape.code.shape and all(
+            np.array_equal(one, other)
+            for one, other in (
+                (known.code, tape.code),
+                (known.constants, tape.constants),
+                (known.parts, tape.parts),
+            )
+        ):
+            return known
+    _made[:] = [tape, *_made[: KEPT - 1]]
+    return tape
+
+
+def _seen(tape: Tape, forms: dict[int, Floats]) -> list[int]:
+    """The affine rows that rows which are not affine read, in order, without constants."""
+    read = {row for k in range(len(tape.code)) if k not in forms for row in _operands(tape, k) if row in forms}
+    return [row for row in sorted(read) if forms[row][:3].any()]
+
+
+def _seen_first(tape: Tape, forms: dict[int, Floats]) -> list[int]:
+    """Three affine rows at the beginning through which all else sees the point: a formula in x, y, z of an object that
+    is moved, in which more forms follow. The last such rows; empty if there are none."""
+    last_use: dict[int, int] = {}
+    for k in range(len(tape.code)):
+        if tape.code[k, 0] not in (ops.CONSTANT, ops.X, ops.Y, ops.Z):
+            last_use |= dict.fromkeys(_operands(tape, k), k)
+    found: list[int] = []
+    live: list[int] = []
+    for k in range(len(tape.code) - 1):
+        if k not in forms:
+            break
+        live = [row for row in [*live, k] if last_use.get(row, -1) > k and forms[row][:3].any()]
+        if len(live) == 3:
+            found = live
+    return found
 
 
 def _with_its_own_constants(tape: Tape) -> Tape:

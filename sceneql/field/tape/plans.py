@@ -5,6 +5,7 @@ Imports numpy: to be imported by the function that needs it.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -116,6 +117,26 @@ def root_of(tape: Tape, row: int) -> tuple[int, int]:
 
 def ray_plan(tape: Tape) -> Ints:
     """The plan by which ray_polynomial_kernels finds roots of a tape on a single ray; NO_FORM alone: by enclosures."""
+    return _ray_plan(_Form(tape))
+
+
+class _Form:
+    """What plans depend on: a tape's code, and which constants are positive: the same as an object moves."""
+
+    def __init__(self, tape: Tape) -> None:
+        self.tape = tape
+        self._key = tape.code.tobytes(), (tape.constants > 0.0).tobytes()
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Form) and self._key == other._key
+
+
+@lru_cache(maxsize=64)
+def _ray_plan(form: _Form) -> Ints:
+    tape = form.tape
     none = np.array([NO_FORM], dtype=np.int32)
     last = without_factor(tape, len(tape.code) - 1)
     rows = [(last, -1)]

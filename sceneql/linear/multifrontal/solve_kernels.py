@@ -9,7 +9,7 @@ memory gives them.
 
 from numba import types
 
-from sceneql.compiled.kernels import lean
+from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.threads_kernels import over_threads
 from sceneql.linear.multifrontal import layout
 from sceneql.linear.multifrontal.backward_kernels import backward
@@ -22,13 +22,12 @@ WORTH_THREADS = 500_000
 SOLVE = types.void(I, A, A, A)
 
 
-@lean(SOLVE, inner=True)
-def solve_symmetric(plan, factors, b, work):
-    """Solve as systems_kernels.solve_system does."""
-    n, fronts, order, pieces = plan[0], plan[1], plan[2], plan[layout.PIECES]
-    x, carried = work[:n], work[n:]
+@lean_inlined
+def solve_up(plan, factors, b, x, carried):
+    """The first pass of `solve_symmetric`, to x (n,) in the order of elimination."""
+    fronts, order, pieces = plan[1], plan[2], plan[layout.PIECES]
     entry = plan[layout.ENTRY] if plan[layout.HEAD + layout.FIELDS * fronts + 5] >= WORTH_THREADS else 0
-    for k in range(n):
+    for k in range(x.size):
         x[k] = b[plan[order + k]]
     if pieces > 0:
         over_threads(entry, plan[layout.THREADS], plan[layout.FORWARD], pieces, 0.0, factors, x, carried, plan)
@@ -37,12 +36,26 @@ def solve_symmetric(plan, factors, b, work):
         forward(plan, factors, x, carried, done, plan[at])
         done = plan[at + 1]
     forward(plan, factors, x, carried, done, fronts)
-    last = fronts
+
+
+@lean_inlined
+def solve_down(plan, factors, b, x, carried):
+    """The second pass of `solve_symmetric`, from what the first left."""
+    last, order, pieces = plan[1], plan[2], plan[layout.PIECES]
+    entry = plan[layout.ENTRY] if plan[layout.HEAD + layout.FIELDS * last + 5] >= WORTH_THREADS else 0
     for at in range(plan[layout.PIECES_AT] + 3 * (pieces - 1), plan[layout.PIECES_AT] - 3, -3):
         backward(plan, factors, x, carried, plan[at + 1], last)
         last = plan[at]
     backward(plan, factors, x, carried, 0, last)
     if pieces > 0:
         over_threads(entry, plan[layout.THREADS], plan[layout.BACKWARD], pieces, 0.0, factors, x, carried, plan)
-    for k in range(n):
+    for k in range(x.size):
         b[plan[order + k]] = x[k]
+
+
+@lean(SOLVE, inner=True)
+def solve_symmetric(plan, factors, b, work):
+    """Solve as systems_kernels.solve_system does."""
+    x, carried = work[: plan[0]], work[plan[0] :]
+    solve_up(plan, factors, b, x, carried)
+    solve_down(plan, factors, b, x, carried)
