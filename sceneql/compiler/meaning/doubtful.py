@@ -10,6 +10,9 @@ from sceneql.compiler.meaning import (
     at_rest,
     braked,
     buried_source,
+    collapses,
+    creeping,
+    drifting,
     elementary,
     enclosed,
     few_frames,
@@ -19,6 +22,7 @@ from sceneql.compiler.meaning import (
     lighting,
     maps,
     missed,
+    no_side,
     one_spring,
     short_ways,
     slack,
@@ -27,6 +31,7 @@ from sceneql.compiler.meaning import (
     still_flows,
     still_keys,
     strobing,
+    thousandths,
     tied,
     unread_text,
     unused_parts,
@@ -64,6 +69,11 @@ ALL = (
     still_fields,
     still_flows,
     braked,
+    collapses,
+    creeping,
+    drifting,
+    no_side,
+    thousandths,
 )
 
 
