@@ -10,9 +10,6 @@ from sceneql.compiler.meaning import (
     at_rest,
     braked,
     buried_source,
-    collapses,
-    creeping,
-    drifting,
     elementary,
     enclosed,
     few_frames,
@@ -22,7 +19,6 @@ from sceneql.compiler.meaning import (
     lighting,
     maps,
     missed,
-    no_side,
     one_spring,
     short_ways,
     slack,
@@ -31,7 +27,6 @@ from sceneql.compiler.meaning import (
     still_flows,
     still_keys,
     strobing,
-    thousandths,
     tied,
     unread_text,
     unused_parts,
@@ -69,11 +64,6 @@ ALL = (
     still_fields,
     still_flows,
     braked,
-    collapses,
-    creeping,
-    drifting,
-    no_side,
-    thousandths,
 )
 
 

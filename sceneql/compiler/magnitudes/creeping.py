@@ -37,7 +37,8 @@ def _one(facts: Facts, task: Task, models: list[str], found: Diagnostics) -> Non
         return
     critical = 2.0 * (stiffness * max(masses)) ** 0.5
     if damping > OVER * critical and damping > LONG * stiffness * facts.clock.end:
-        text = f"the damping of '{task.name}' is {float(f'{damping / critical:.2g}'):g} times the critical: it creeps back in "
+        over = float(f"{damping / critical:.2g}")
+        text = f"the damping of '{task.name}' is {over:g} times the critical: it creeps back in "
         text += f"{damping / stiffness:.3g} s, and the clock ends at {facts.clock.end:g} s"
         help = f"write `damping: {float(f'{USUAL * critical:.2g}'):g} N*s/m`, a tenth of the critical"
         found.warning("nothing-moves", text, kind.damping.span or task.span, help=help)
