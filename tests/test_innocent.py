@@ -55,7 +55,7 @@ models:
   drop: {membrane: {of: blob, material: glass, law: {tension: 1 N/m}}}
   water: {flow: {size: 1 1 1 m, corner: -0.5 -0.5 -0.5 m, cell: 0.2 m, density: 1 kg/m^3, viscosity: 0.1 Pa*s}}
 forces: {carried: {immersion: {on: [drop], in: water}}}
-clock: {end: 1 ms}
+clock: {end: 1 ms, speed: 1e-4}
 """
 RESTING = f"""
 objects: {{floor: plane, {BALL}, mark: {{box: {{size: 1 0.02 1 m, position: 0 0.01 0 m}}}}}}

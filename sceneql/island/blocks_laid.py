@@ -36,6 +36,7 @@ class Block:
     energy: str | None = None
     """The kernel of the term's potential energy, as in Assembly.term."""
     damped: bool = False
+    stiff: bool = False
     help: str = ""
     """The advice in the failure message of impacts that accumulate without end (Assembly.contact)."""
 

@@ -56,8 +56,7 @@ class IslandAssembly(Offered):
     """Number of bodies of the whole island, where this is the assembly of a block of it; else 0."""
     places: Callable[[Link], NDArray[int64] | None] = lambda link: None
     points: Callable[[Link], tuple[Bodies, int, tuple[float, float, float]] | None] = lambda link: None
-    """Resolves a link to a position: its masses, the index of one, and the point on it (Model.point); set as
-    ``places``."""
+    """Resolves a link to a position: its masses, index of one, point on it (Model.point); set as ``places``."""
     ties: list[Tied] = field(default_factory=list)
     """The island's ties, for the term that solves for all their forces."""
     tie_ints: tuple[int, ...] = ()
@@ -108,10 +107,11 @@ class IslandAssembly(Offered):
         apart: bool = False,
         energy: str | None = None,
         damped: bool = False,
+        stiff: bool = False,
     ) -> None:
         """Add a term to the rate."""
         self._apart = self._apart and apart
-        self._terms[stage].append(Block((kernel,), ints, 0, jacobian, *self._word, energy, damped))
+        self._terms[stage].append(Block((kernel,), ints, 0, jacobian, *self._word, energy, damped, stiff))
 
     def tied_drift(self, kernel: str, ints: Ints) -> None:
         """Add a correction of drifts by ties (system.Assembly)."""
@@ -358,6 +358,7 @@ class IslandAssembly(Offered):
             events=tuple((block.pairs, Origin(block.part, block.span), block.help) for block in events),
             gives_way=self.gives_way,
             damped=any(block.damped for block in blocks[1:first_exact]),
+            stiff=tuple((block.kernels[0], block.ints) for block in blocks[1:first_exact] if block.stiff),
         )
 
     def _energies(self, groups: list[tuple[tuple[str, ...], int]], terms: list[Block]) -> tuple[str, ...] | None:

@@ -108,6 +108,8 @@ class System:
     damped: bool = False
     """Whether forces also depend on velocities; the energies are then those of the forces at zero velocities."""
 
+    stiff: tuple[tuple[str, Any], ...] = ()
+    """(kernel, integers) of terms that additive methods may march implicitly (``stiff`` of Assembly.term)."""
     names: tuple[tuple[int, int, Callable[[int], str]], ...] = ()
     """(offset, count, name of an entry by its number) of entries that have names of their own."""
 

@@ -8,6 +8,7 @@ from sceneql.skins.skin_layout import (
     COUNT,
     DEPTH_AT,
     FORCE_AT,
+    HELD_AT,
     LENGTHS_AT,
     MODULUS_AT,
     NORMALS_AT,
@@ -28,11 +29,11 @@ ROUNDING = 2e-16
 @lean(TERM, inner=True)
 def tension(t, y, rate, floats, ints):
     """Adds what each side pulls at its ends [N]: pretension + stiffness (s - 1) + modulus (s - 1/s^3) + skalak (s^3 -
-    s), s = length over own length, the last two of sheets that do not stretch across."""
+    s), s = length over own length, the last two of sheets that do not stretch across; or what a solver has found."""
     count, at, force = ints[COUNT], ints[POSITION_AT], ints[FORCE_AT]
     pretension, stiffness = floats[ints[PRETENSION_AT]], floats[ints[STIFFNESS_AT]]
     modulus, skalak = floats[ints[MODULUS_AT]], floats[ints[MODULUS_AT] + 1]
-    lengths = floats[ints[LENGTHS_AT] : ints[LENGTHS_AT] + count]
+    lengths, held = floats[ints[LENGTHS_AT] : ints[LENGTHS_AT] + count], floats[ints[HELD_AT] :]
     for v in range(count):
         w = v + 1 if v < count - 1 else 0
         dx, dy = y[at + 3 * w] - y[at + 3 * v], y[at + 3 * w + 1] - y[at + 3 * v + 1]
@@ -40,6 +41,8 @@ def tension(t, y, rate, floats, ints):
         if length > 0.0:
             s = length / lengths[v]
             pull = pretension + stiffness * (s - 1.0) + modulus * (s - 1.0 / (s * s * s)) + skalak * (s * s * s - s)
+            if held[0] != 0.0:
+                pull = held[1 + v]
             pull /= length
             floats[force + 3 * v] += pull * dx
             floats[force + 3 * v + 1] += pull * dy

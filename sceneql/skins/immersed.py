@@ -25,4 +25,4 @@ def immerse(flow: Flow, skin: Membrane, peskin: bool, assembly: Assembly) -> Non
         dense = assembly.floats([flow.density])
     ints = (skin.count, skin.position_at, skin.force_at, box, dense, int(peskin), mode, *flow.ints)
     assembly.term("velocity", f"{kernels}:carry", ints)
-    assembly.term("close", f"{kernels}:push", ints)
+    assembly.term("close", f"{kernels}:push", ints, stiff=not flow.varying)

@@ -9,10 +9,10 @@ face the mass in its own cell; 1 for Peskin's kernel of four points, 0 for splin
 a flow of one fluid); from FLOW on the flow's integers
 (flows/layout.py)."""
 
-PRETENSION_AT, STIFFNESS_AT, LENGTHS_AT, MODULUS_AT = 3, 4, 5, 6
+PRETENSION_AT, STIFFNESS_AT, LENGTHS_AT, MODULUS_AT, HELD_AT = 3, 4, 5, 6, 7
 """Of the tension of a closed line: its tension where it has its own lengths, by how much it grows for a relative
 stretch [N]; these lengths [m], of the side from each vertex to the next; two more numbers, of rubber and of Skalak's
-law [N]."""
+law [N]; 1 where a solver has found the tensions of sides, then these [N]."""
 
 VOLUME_AT, NORMALS_AT, TALLY_AT, DEPTH_AT = 3, 4, 5, 6
 """Of what keeps its volume: that volume [m^3]; room for three floats a vertex; the entry of y that sums what was put

@@ -76,6 +76,7 @@ class Assembly(Protocol):
         apart: bool = False,
         energy: str | None = None,
         damped: bool = False,
+        stiff: bool = False,
     ) -> None:
         """Add a term to the rate; ``kernel`` is ``"package.module:function"``.
 
@@ -87,7 +88,8 @@ class Assembly(Protocol):
         potential energy [J] of its force, called after the rate has been evaluated at the same t. Empty: the term adds
         no force to what moves. None: its force has no potential. Where every term of an island has one of the former,
         Newton's method uses the total potential energy in its line search. ``damped``: the force also depends on
-        velocities, and ``energy`` is its potential at zero velocities.
+        velocities, and ``energy`` is its potential at zero velocities. ``stiff``: an additive method may march what
+        it does implicitly, by its integers (System.stiff).
         """
 
     def limit(self, kernel: str, ints: Ints) -> None:

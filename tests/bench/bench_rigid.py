@@ -4,6 +4,7 @@
 
     free     a free body, cases A and B: angle, angular momentum L
     rods     two rods on hinges to 2 and 10 s: angles and rates, gaps of the hinges
+    top      a heavy top on a ball, 5 s: how it leans, how far it went round
     chain    10, 100 and 1000 links on hinges: ms a step
     windows  four-bar chains of 1 and 40 windows, 10 s through the places where all links lie in line: energy
 
@@ -306,6 +307,26 @@ def rods_exudyn(step: float, end: float) -> tuple[Any, float, float]:
     return angles, float(max(np.abs(ends[0]).max(), np.abs(np.subtract(ends[2], ends[1])).max())), ms
 
 
+def top() -> None:
+    """A heavy top: about its foot 1, 1 and 0.5 kg m^2, m g l = 3 N m, 8 rad/s about its axis, which leans by 0.4."""
+    s, c = math.sin(0.4), math.cos(0.4)
+    model = f"mass: 1 kg, inertia: 0.75 0.5 0.75 kg*m^2, position: {vector((0.5 * s, 0.5 * c, 0))} m"
+    more = f"rotation: {{about: z, angle: -0.4 rad}}, spin: {vector((8 * s, 8 * c, 0))} rad/s"
+    print("heavy top, 5 s")
+    tell("", "leans [rad]", "round [rad]", "ms", "kernel", "steps")
+    words = ["auto", *(f"dop853: {{tolerance: {tolerance}}}" for tolerance in ("1e-9", "1e-12", "1e-13"))]
+    for word in (*words, "blanes_moan: {step: 10 ms}", "verlet: {step: 1 ms}"):
+        script = (
+            f"clock: {{end: 5 s}}\nmodels: {{top: {{rigid: {{{model}, {more}}}}}}}\n"
+            "forces: {down: {gravity: {strength: 6 m/s^2}}}\n"
+            f"ties: {{foot: {{ball: {{between: [top, world], at: 0 0 0 m}}}}}}\nsolvers: {{main: {{{word}}}}}\n"
+        )
+        ((x, y, z),), _, columns, _ = run(script, 5.0, "top.position")
+        off = abs(math.acos(2 * y) - 0.400012050557)
+        went = abs(math.remainder(math.atan2(-z, x) - 4.549154113092, 2 * math.pi))
+        tell(word, f"{off:.1e}", f"{went:.1e}", *columns)
+
+
 def chain() -> None:
     """Links that hang from one end and start level."""
     print("chain of links on hinges: ms a step, and to set it up")
@@ -350,7 +371,7 @@ def windows() -> None:
 
 def main(wanted: list[str]) -> None:
     """Print the tables."""
-    parts = {"free": free, "rods": rods, "chain": chain, "windows": windows}
+    parts = {"free": free, "rods": rods, "top": top, "chain": chain, "windows": windows}
     for name in wanted or parts:
         parts[name]()
 

@@ -10,6 +10,7 @@
     python tests/bench/bench_skins.py capsule 12 10   rubber in shear: deformation, cells a radius, radii between walls
     python tests/bench/bench_skins.py bag 96          bag of heavy fluid on a floor, cells a side
     python tests/bench/bench_skins.py fall 96         circle that begins to fall, cells a side and half
+    python tests/bench/bench_skins.py stiff 1e5          implicit skins beside explicit ones, stretch [N/m]
     python tests/bench/bench_skins.py share 64        a skin's part of a step's time there
 
 Sources: Tu & Peskin (1992), SIAM J. Sci. Stat. Comput. 13, 1361-1376, for the relaxing ring. The frequency and damping
@@ -277,6 +278,27 @@ def fall(cells: str) -> None:
         print(f"{density:g} : 1: off by {found[0]:+.2%}, {found[1]:+.2%}, drawn to 0 {2 * found[1] - found[0]:+.2%}")
 
 
+def stiff(stretch: str = "1e5") -> None:
+    """An ellipse of springs in a vortex of 1 m/s to 1 s, by `auto` and by implicit skins: time, places at the end."""
+    wave, ends = "cos(2*pi*x/3)*cos(2*pi*y/3)*0.477464829275686", []
+    skin = f"of: egg, law: {{springs: {{stretch: {stretch} N/m}}}}, spacing: 3 m/64/2"
+    steps = ("step: 20 ms, ", "step: 10 ms, ", "step: 5 ms, ", "")
+    for solver in ("auto: {}", *(f"ark3: {{{step}skins: implicit}}" for step in steps)):
+        made = Balloon.of(
+            "clock: {end: 1 s, fps: 1}\nmodels:\n  air: {flow: {size: 3 3 m, cell: 3/64 m, density: 1 kg/m^3, "
+            f'viscosity: 0.1 Pa*s, initial: {{stream_function: "{wave}"}}, boundary: {WAVES}}}}}\n'
+            f"  balloon: {{membrane: {{{skin}}}}}\nforces: [{{immersion: {{on: [balloon], in: air}}}}]\n"
+            f'objects: {{egg: {{implicit: {{field: "{ELLIPSE}", bounds: {{ball: 1}}, position: 1.53 1.53 0 m}}}}}}\n'
+            f"solvers: {{main: {{{solver}}}}}\n"
+        )
+        begun = time.process_time()
+        made.run.advance(1.0)
+        taken, done = time.process_time() - begun, made.run.march.statistics
+        ends.append(made.read("positions"))
+        apart = np.abs(ends[-1] - ends[0]).max()
+        print(f"{solver}: {done.steps} steps, {done.rejected} rejected, {taken:.2f} s, {apart:.1e} m off", flush=True)
+
+
 def exponent(values: Any, apart: float) -> complex:
     """That of a decaying oscillation by its samples (Prony 1795)."""
     rows = np.column_stack([values[1:-1], values[:-2]])
@@ -308,7 +330,7 @@ def ring(across: str) -> None:
 
 
 if __name__ == "__main__":
-    all_of = (areas, circle, rest, ring, correction, deep, share, bag, fall, capsule)
+    all_of = (areas, circle, rest, ring, correction, deep, stiff, share, bag, fall, capsule)
     parts = {one.__name__: one for one in all_of}
     if len(sys.argv) > 1:
         parts[sys.argv[1]](*sys.argv[2:])
@@ -320,6 +342,7 @@ if __name__ == "__main__":
             ring("21.33"),
             correction(),
             deep("48"),
+            stiff(),
             share("64"),
             bag("96"),
             fall("96"),

@@ -5,6 +5,7 @@ from numba import types
 
 from sceneql.bodies.rigid.tie_kernels import MOST_CORRECTIONS, balance, clear, refine, remaining, survey
 from sceneql.bodies.rigid.tie_matrix_kernels import (
+    EASE_AT,
     MOVED_AT,
     MOVERS,
     MOVERS_AT,
@@ -116,7 +117,8 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
     if weigh_speeds(floats, ints) > CLOSED:
         if gap > CLOSED:  # nothing was surveyed behind the last closing
             clear(floats, ints)
-        if before <= SLIGHT and gap <= CLOSED:
+        # Where rows may depend on one another the matrix can change much by a slight motion.
+        if before <= SLIGHT and gap <= CLOSED and floats[ints[EASE_AT]] == 0.0:
             refine(floats, ints, AT_SPEED, AT_SIZE, remaining(floats, ints, AT_SPEED, AT_SIZE), MOST_CORRECTIONS, False)
         else:
             balance(floats, ints, AT_SPEED, AT_SIZE)

@@ -11,9 +11,16 @@ from sceneql.compiler.meaning.places import Ball, ball, distance, text
 from sceneql.graph import Task
 from sceneql.kinds import Camera, Object
 from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.expression import Link
 
 MOST = 64
 """Largest number of parts that are compared with one another."""
+MEANT = (1000.0, 10.0, 100.0)
+"""Factors by which a length is off that is in another unit: mm for m, mm for cm, cm for m."""
+FEWEST, WIDEST = 0.7, 4.0
+"""Reach of a part over the distance to its neighbors, between which it is most likely meant."""
+APART = 0.25
+"""The same, below which not even single beads are meant."""
 
 
 def warn(facts: Facts, found: Diagnostics) -> None:
@@ -28,7 +35,7 @@ def warn(facts: Facts, found: Diagnostics) -> None:
         if len(joins) > 1 and "blend" in type(kind).model_fields and None not in held.values():
             _solids(facts, task, {name: one for name, one in held.items() if one is not None}, used, found)
         if "threshold" in type(kind).model_fields and "skeleton" in type(kind).model_fields:
-            _skeleton(task, kind, found, joined=facts.whole)
+            _skeleton(facts, task, kind, found)
         _unchanged(facts, task, kind, used, found)
         _placed_twice(facts, task, kind, found)
 
@@ -77,10 +84,13 @@ def _shown(facts: Facts, task: Task, whole: Ball, used: set[str]) -> bool:
     return alone and task.original is None and not facts.clear(task.kind)
 
 
-def _skeleton(task: Task, kind: Any, found: Diagnostics, *, joined: bool) -> None:
+def _skeleton(facts: Facts, task: Task, kind: Any, found: Diagnostics) -> None:
     """Points that are too far from one another to be joined, or too light to be seen."""
     known = {"point", "points", "radius", "weight", "color"}
     if kind.segments or any(part.model_fields_set - known for part in kind.skeleton or ()):
+        return
+    if not kind.skeleton and kind.points is not None and not kind.points.constant:
+        _on_net(facts, task, kind, found)
         return
     parts: list[tuple[tuple[float, ...], float, float]] = []
     for part in (kind, *(kind.skeleton or ())):
@@ -106,10 +116,24 @@ def _skeleton(task: Task, kind: Any, found: Diagnostics, *, joined: bool) -> Non
         told = f"'{task.name}' is empty: its density is nowhere above the threshold of {kind.threshold:g}"
         help = "write a larger `weight`, 1 by default, or a smaller `threshold`"
         found.warning("empty-surface", told, task.span, help=help)
-    elif joined and alone and len(parts) > 1:
+    elif facts.whole and alone and len(parts) > 1:
         told = f"the parts of '{task.name}' do not touch: the nearest two are {min(apart):.3g} m out of reach"
         far = min(distance(a, b) for (a, _, _), (b, _, _) in combinations(parts, 2))
         found.warning("not-joined", told, task.span, help=f"write a larger `radius`, as `radius: {far:.2g} m`")
+
+
+def _on_net(facts: Facts, task: Task, kind: Any, found: Diagnostics) -> None:
+    """Points at the masses of a net whose neighbors are too far apart to be joined, all at one radius."""
+    expr, radius = kind.points.expr, constant(kind.radius)
+    model: Any = facts.models.get(expr.task) if isinstance(expr, Link) and expr.output == "positions" else None
+    net = model.static_net() if hasattr(model, "static_net") else None
+    if net is None or not isinstance(radius, float) or not net[1] or radius >= APART * net[0]:
+        return
+    far = net[0]
+    told = f"the parts of '{task.name}' do not touch: they reach {radius:.3g} m far, and neighbors in '{expr.task}' "
+    told += f"are {far:.3g} m apart"
+    meant = next((radius * by for by in MEANT if FEWEST * far <= radius * by <= WIDEST * far), far)
+    found.warning("not-joined", told, kind.radius.span or task.span, help=f"write `radius: {meant:.3g} m`")
 
 
 def _unchanged(facts: Facts, task: Task, kind: Any, used: set[str], found: Diagnostics) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sceneql.compiler.passes.fillings import Beginning
@@ -10,9 +11,12 @@ from sceneql.compiler.passes.overlaps import UNKNOWN
 from sceneql.graph import Task
 from sceneql.kinds import Model, Ref
 from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.span import Span
 
 ROOM = 1e-3
 """Tolerance around the box, relative to its size: positions may be rounded."""
+BEYOND = re.compile(r"([xyz])\s*([<>])=?\s*[^<>=&|]+")
+"""What lies on one side of a place along an axis."""
 
 
 def report_empty_holds(tasks: Mapping[str, Task], found: Diagnostics) -> None:
@@ -27,8 +31,19 @@ def report_empty_holds(tasks: Mapping[str, Task], found: Diagnostics) -> None:
             room = ROOM * max(b - a for a, b in zip(low, high, strict=True))
             if part.misses([a - room for a in low], [b + room for b in high]):
                 ends = ", ".join(f"{axis} from {a:.4g} to {b:.4g}" for axis, a, b in zip("xyz", low, high, strict=True))
-                help = f"its material goes in {ends} m"
+                help = f"its material goes in {ends} m{reached(part.span, low, high)}"
                 found.error("no-mass", f"'{part.name}' holds no node", part.span or task.span, help=help)
+
+
+def reached(told: Span | None, low: Sequence[float], high: Sequence[float]) -> str:
+    """What to write in place of a condition ``x > 2`` that misses a box low..high (3,) [m]; empty of others."""
+    axis = None if told is None else BEYOND.fullmatch(told.text.strip("\"' "))
+    if axis is None:
+        return ""
+    at = "xyz".index(axis[1])
+    room = ROOM * (high[at] - low[at])
+    end = high[at] - room if axis[2] == ">" else low[at] + room
+    return f": write `where: {axis[1]} {axis[2]} {end:.6g}`"
 
 
 def _box(ref: Ref, start: Any) -> Any:

@@ -294,7 +294,7 @@ class Collision(Contact):
         others: tuple[Ref, ...],
     ) -> None:
         """Add the contacts of what a flow carries: of skins with one another, of these and masses with objects."""
-        from sceneql.skins.touching import assemble
+        from sceneql.skins.touch.touching import assemble
 
         if carried and self.mode in ("exact", "local", "barrier"):
             text = f"masses of '{carried[0].model}' move as their flow does, and have no impacts in mode `{self.mode}`"

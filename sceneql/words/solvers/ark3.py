@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from sceneql.kinds import FixedScalar, FixedTime, Solver, field
 
@@ -18,6 +18,10 @@ class Ark3(Solver):
     ``step`` gives their length. The pressure belongs to each stage, so the order stays beside walls, for several
     projections a stage. Diffusion of fields that are solved with the flow is implicit too; all else is explicit.
     Source: Kennedy & Carpenter (2003), Appl. Numer. Math. 44, 139-181, ARK3(2)4L[2]SA.
+
+    By `skins: implicit` the tensions of flat skins of springs are implicit, too, at some solves of the fluid a stage: a
+    skin that is so stiff that it hardly stretches then takes steps as long as the flow's own, once its first swings are
+    over. Source: Ceniceros, Fisher & Roma (2009), J. Comput. Phys. 228, 7137-7158.
     """
 
     marches = "a flow"
@@ -25,9 +29,16 @@ class Ark3(Solver):
     tolerance: FixedScalar = field("Error of a step, in parts of the largest value.", "1e-4", at_least=1e-12, below=1)
     step: FixedTime | None = field("Length of a step, in place of a tolerance.", None, above=0)
     largest_step: FixedTime | None = field("No step is longer.", None, above=0)
+    skins: Literal["explicit", "implicit"] = field(
+        "How the tensions of flat skins of springs are marched: implicit takes long steps of stiff ones.", "explicit"
+    )
 
     def stepper(self) -> Stepper:
         """By the tolerance, or fixed steps."""
+        if self.skins == "implicit":
+            from sceneql.skins.stiff import stiff_step
+
+            return stiff_step.stepper(self.tolerance, self.step, self.largest_step)
         from sceneql.flows.schemes import additive
 
         return additive.stepper(self.tolerance, self.step, self.largest_step)
@@ -39,10 +50,14 @@ class Ark3(Solver):
         return multistep.largest_growth(jacobian, lambda decay, turn: additive.growth(decay, turn, step))
 
     def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
-        """What decays is implicit, what turns explicit; none is told of swings."""
+        """What decays is implicit, what turns explicit; none is told of swings, nor of turns with implicit skins."""
         from sceneql.flows.schemes import additive
 
-        return None if frequency > 0.0 else additive.growth(decay, turn, step)
+        return (
+            None
+            if frequency > 0.0 or (turn != 0.0 and self.skins == "implicit")
+            else additive.growth(decay, turn, step)
+        )
 
     def measure(self) -> str:
         """In parts of the largest."""

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.skins import touch_pairs_layout as layout
-from sceneql.skins.touch_layout import STEEPER
+from sceneql.skins.touch import touch_pairs_layout as layout
+from sceneql.skins.touch.touch_layout import STEEPER
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sceneql.skins.flat import Line
     from sceneql.system import Assembly, Flow
 
-KERNELS = "sceneql.skins.touch_pairs_kernels"
+KERNELS = "sceneql.skins.touch.touch_pairs_kernels"
 
 
 NEAR = 0.01
@@ -80,7 +80,7 @@ def _must_be_apart(
 
     Raises ScriptError for a skin that crosses or touches another; one may lie inside another.
     """
-    from sceneql.skins.touch_start_kernels import least
+    from sceneql.skins.touch.touch_start_kernels import least
 
     all_points = [place.reshape(-1, 3) for place in places]
     help = f"leave a distance between them: forces begin at the gap of {gap:.3g} m"

@@ -10,8 +10,8 @@ from sceneql.contacts import layout as surfaces
 from sceneql.contacts.barrier import objects_layout as layout
 from sceneql.contacts.barrier.objects_kernels import distance
 from sceneql.contacts.shape_kernels import inward, turn
-from sceneql.skins.touch_layout import BODIES, BODY, RELATIVE
-from sceneql.skins.touch_objects_kernels import add, hold_one, met
+from sceneql.skins.touch.touch_layout import BODIES, BODY, RELATIVE
+from sceneql.skins.touch.touch_objects_kernels import add, hold_one, met
 from sceneql.system.signatures_kernels import AFTER_STEP, LIMIT, TERM, A, F, I, N
 
 LEFT = 0.01

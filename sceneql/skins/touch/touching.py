@@ -13,8 +13,8 @@ from sceneql.contacts.barrier import objects_layout as layout
 from sceneql.contacts.barrier.standing import LIMIT, must_be_apart
 from sceneql.contacts.colliders import must_be_free, surface_of, surfaces
 from sceneql.kinds import Ref
-from sceneql.skins import touch_layout as own
-from sceneql.skins.touching_skins import add_pairs
+from sceneql.skins.touch import touch_layout as own
+from sceneql.skins.touch.touching_skins import add_pairs
 
 if TYPE_CHECKING:
     from sceneql.kinds import Value
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from sceneql.skins.flat import Line
     from sceneql.system import Assembly, Bodies, Membrane
 
-OBJECTS = "sceneql.skins.touch_objects_kernels"
-BODIES = "sceneql.skins.touch_bodies_kernels"
+OBJECTS = "sceneql.skins.touch.touch_objects_kernels"
+BODIES = "sceneql.skins.touch.touch_bodies_kernels"
 
 
 @dataclass(frozen=True, slots=True)

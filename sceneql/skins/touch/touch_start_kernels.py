@@ -6,8 +6,8 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean
-from sceneql.skins import touch_pairs_layout as layout
-from sceneql.skins.touch_pairs_search_kernels import lay, look
+from sceneql.skins.touch import touch_pairs_layout as layout
+from sceneql.skins.touch.touch_pairs_search_kernels import lay, look
 from sceneql.system.signatures_kernels import A, F, I, N
 
 

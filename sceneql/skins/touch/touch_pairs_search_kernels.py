@@ -7,7 +7,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier.distance_kernels import point_triangle
-from sceneql.skins import touch_pairs_layout as layout
+from sceneql.skins.touch import touch_pairs_layout as layout
 from sceneql.system.signatures_kernels import A, F, I, N
 
 AHEAD = 1.5

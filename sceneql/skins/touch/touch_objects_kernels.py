@@ -12,8 +12,8 @@ from sceneql.contacts import layout as surfaces
 from sceneql.contacts.barrier import objects_layout as layout
 from sceneql.contacts.barrier.objects_kernels import distance
 from sceneql.contacts.shape_kernels import inward, turn
-from sceneql.skins.touch_layout import ANCHORS, FORCE, STEEP
-from sceneql.skins.touch_push_kernels import push
+from sceneql.skins.touch.touch_layout import ANCHORS, FORCE, STEEP
+from sceneql.skins.touch.touch_push_kernels import push
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM
 
 

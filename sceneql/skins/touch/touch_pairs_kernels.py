@@ -12,9 +12,9 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.skins import touch_pairs_layout as layout
-from sceneql.skins.touch_pairs_search_kernels import corner, go, is_near, known, lay, lay_where_near, look, vertex
-from sceneql.skins.touch_push_kernels import push
+from sceneql.skins.touch import touch_pairs_layout as layout
+from sceneql.skins.touch.touch_pairs_search_kernels import corner, go, is_near, known, lay, lay_where_near, look, vertex
+from sceneql.skins.touch.touch_push_kernels import push
 from sceneql.system.signatures_kernels import AFTER_STEP, LIMIT, TERM, A, F, I, N
 
 KEPT = 0.9

@@ -1,0 +1,1 @@
+"""Skins of tensions solved for."""

@@ -1,0 +1,279 @@
+# mypy: ignore-errors
+"""A step of an additive Runge-Kutta pair (flows/schemes/additive_kernels) in which skins are implicit, too.
+
+Where closed lines of springs are stiff, their tensions T are unknowns of each stage i, a = h d_ii:
+X = X* + a J u, u - a P L u = P (u* + a S E T), T = T0 + k (l(X)/l0 - 1), with X*, u* what is known, E the pulls of
+sides at their ends, and S and J what spreads and reads at the latest X. Newton's updates solve
+(l0/k - a^2 E' J G S E) dT = l - l0 - (T - T0) l0/k, where G is one solve of viscosity, by conjugate gradients; their
+preconditioner is Cholesky's factor of that matrix as it was, found anew where they have become slow. No residual is a
+stiffness times a length, so that errors of lengths do not become forces; between steps the tensions go on, and vertices
+that are moved to keep an area do not change them. Source: Ceniceros, Fisher & Roma (2009), J. Comput. Phys. 228,
+7137-7158, for implicit skins.
+
+``numbers``: as there, then the integers of lines (stiff_lines_kernels), and where these begin.
+"""
+
+import math
+
+from numba import types
+
+import sceneql.system.channels as channels
+from sceneql.compiled.kernels import lean
+from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
+from sceneql.flows.layout import AT, CHANGE, FACES, RATE, SKIP, VELOCITY, WORK
+from sceneql.flows.projection_kernels import project
+from sceneql.flows.schemes.additive_kernels import (
+    AXES,
+    BLOCKS,
+    EXACT,
+    FINE,
+    FLOW_AT,
+    HEAD,
+    OPERATORS,
+    ROUNDING,
+    SHARE,
+    STAGES,
+    TABLES_AT,
+    implicit,
+    product,
+    quiet,
+)
+from sceneql.flows.schemes.operators_kernels import OPERATOR, same, solve, spread, tally
+from sceneql.grids.multigrid.stencil_kernels import dot
+from sceneql.skins.stiff.stiff_lines_kernels import (
+    SIDES,
+    apart,
+    by_law,
+    directions,
+    factor,
+    hand_over,
+    hold,
+    lengthened,
+    missing,
+    move,
+    pull,
+    read,
+    substitute,
+)
+from sceneql.system.signatures_kernels import STEP, A, F, I
+
+MOST, CLOSE = 30, 1e-5
+"""Newton's updates of a stage; what may be left, in parts of sides."""
+SEARCHES, ENOUGH, FEW = 40, 0.03, 4
+"""Iterations for an update, and what they leave; more than so many wear the preconditioner out."""
+HAS, WORN, BEGIN, BEGUN, STATE = range(5)
+"""Of what goes on between steps: 1 where there is a factor; iterations beyond FEW since it was found; the start of the
+latest step [s]; 1 after a step has begun."""
+ROWS = 15
+"""Numbers a side besides the matrix."""
+
+
+@lean(types.boolean(F, A, A, A, A, A, A, A, A, A, A, I, I), inner=True)
+def reply(a, tensions, along, y, source, answer, speeds, longer, room, floats, tables, numbers, lines):
+    """How fast vertices at places in y would move by tensions that act for a time a, and sides become longer."""
+    one = numbers[numbers[FLOW_AT] :]
+    for k in range(one[AT], one[AT] + one[FACES]):
+        source[k] = answer[k] = 0.0
+    pull(tensions, along, a, y, source, floats, lines, one)
+    solved = project(source, CHANGE, floats, one)
+    for k in range(one[AT], one[AT] + one[FACES]):
+        answer[k] = source[k]
+    for number in range(numbers[AXES]):
+        op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
+        solved &= solve(op, a, source, answer, FINE, floats, tables, floats[one[WORK] :], room)
+    solved &= project(answer, CHANGE, floats, one)
+    read(answer, y, speeds, floats, lines, one)
+    lengthened(speeds, along, longer, lines)
+    return solved
+
+
+@lean(types.boolean(F, F, F, A, A, A, A, A, A, A, A, I, I), inner=True)
+def by_tensions(a, exact, rounded, wanted, y, room, more, skins, state, floats, tables, numbers, lines):
+    """Solve a stage in y, from the vertices there and the tensions that ``skins`` begins with. Whether it was."""
+    n, sides = y.size, lines[SIDES]
+    tensions, left, change = skins[:sides], skins[sides : 2 * sides], skins[2 * sides : 3 * sides]
+    p, z, q = skins[3 * sides : 4 * sides], skins[4 * sides : 5 * sides], skins[5 * sides : 6 * sides]
+    soft, along, speeds = skins[6 * sides : 7 * sides], skins[7 * sides : 9 * sides], skins[9 * sides : 11 * sides]
+    moved, matrix = skins[11 * sides : 13 * sides], skins[ROWS * sides : (ROWS + sides) * sides]
+    source, answer = skins[(ROWS + sides) * sides :], skins[(ROWS + sides) * sides + n :]
+    one = numbers[numbers[FLOW_AT] :]
+    first, last = one[AT], one[AT] + one[FACES]
+    for turn in range(MOST):
+        directions(y, along, lines)
+        for k in range(n):
+            source[k] = wanted[k]
+        pull(tensions, along, a, y, source, floats, lines, one)
+        solved = project(source, VELOCITY, floats, one)
+        for k in range(first, last):
+            y[k] = source[k]
+        solved &= implicit(a, exact, rounded, source[:n], y, room, more, floats, tables, numbers)
+        if not solved:
+            return False
+        read(y, y, speeds, floats, lines, one)
+        move(speeds, a, wanted, answer, lines)
+        most = max(missing(answer, tensions, soft, left, floats, lines), apart(y, answer, floats, lines))
+        if not math.isfinite(most):
+            return False
+        if turn > 0 and most < CLOSE:
+            move(speeds, a, wanted, y, lines)
+            return True
+        if state[HAS] == 0.0:
+            for s in range(sides):
+                for r in range(sides):
+                    change[r] = 1.0 if r == s else 0.0
+                solved &= reply(a, change, along, y, source, answer, moved, q, room, floats, tables, numbers, lines)
+                for r in range(sides):
+                    matrix[sides * s + r] = (soft[s] if r == s else 0.0) - a * q[r]
+            if not (solved and factor(matrix, sides)):
+                return False
+            state[HAS], state[WORN] = 1.0, 0.0
+            move(speeds, a, wanted, answer, lines)
+        for s in range(2 * sides):
+            moved[s] = 0.0
+        substitute(matrix, sides, left, z)
+        for s in range(sides):
+            change[s], p[s] = 0.0, z[s]
+        now, target = dot(left, z), ENOUGH * ENOUGH * dot(left, left)
+        count = 0
+        while dot(left, left) > target and count < SEARCHES:
+            if not reply(a, p, along, y, source, answer, speeds, q, room, floats, tables, numbers, lines):
+                return False
+            for s in range(sides):
+                q[s] = soft[s] * p[s] - a * q[s]
+            length = now / dot(p, q)
+            for s in range(sides):
+                change[s] += length * p[s]
+                left[s] -= length * q[s]
+            for s in range(2 * sides):
+                moved[s] += length * speeds[s]
+            substitute(matrix, sides, left, z)
+            before, now, count = now, dot(left, z), count + 1
+            for s in range(sides):
+                p[s] = z[s] + now / before * p[s]
+        state[WORN] += max(count - FEW, 0)
+        if state[WORN] > sides or count == SEARCHES:
+            state[HAS] = 0.0
+        for s in range(sides):
+            tensions[s] += change[s]
+        move(moved, a, answer, y, lines)
+    return False
+
+
+@lean(STEP, inner=True)
+def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
+    """y1 after a step of length h; its error by the embedded method."""
+    n, s = y0.size, numbers[STAGES]
+    lines = numbers[numbers[numbers.size - 1] :]
+    sides, state = lines[SIDES], work[(13 + 2 * s) * n : (13 + 2 * s) * n + STATE]
+    skins = work[(13 + 2 * s) * n + STATE :]
+    tensions, along = skins[:sides], skins[7 * sides : 9 * sides]
+    at_start, at_end = skins[13 * sides : 14 * sides], skins[14 * sides : 15 * sides]
+    rate1, end, end_rate = work[:n], work[n : 2 * n], work[2 * n : 3 * n]
+    wanted, spreading, room, more = work[3 * n : 4 * n], work[4 * n : 5 * n], work[5 * n : 9 * n], work[9 * n : 13 * n]
+    explicit, damped = work[13 * n : (13 + s) * n], work[(13 + s) * n : (13 + 2 * s) * n]
+    e, d = settings[: s * s], settings[s * s : 2 * s * s]
+    b, wrong, nodes = settings[2 * s * s :], settings[2 * s * s + s :], settings[2 * s * s + 2 * s :]
+    latest, tables, velocities = numbers[TABLES_AT] - 1, settings[numbers[TABLES_AT] :], numbers[AXES]
+    tolerance, sizes = settings[2 * s * s + 3 * s], settings[2 * s * s + 3 * s + 1 :]
+    one = numbers[numbers[FLOW_AT] :]
+    rate = rate_at(functions[AT_RATE])
+    first, last = one[AT], one[AT] + one[FACES]
+    floats[one[SKIP]] = 1.0
+    solved, goes_on = True, settings[latest] == t and same(y0, end)
+    settings[latest - 1] = 1.0 if goes_on else 0.0
+    if settings[latest] == t and (goes_on or floats[channels.SETTLED] != 0.0):
+        for k in range(sides):
+            at_start[k] = at_end[k]
+    elif not (state[BEGUN] == 1.0 and state[BEGIN] == t):
+        by_law(y0, at_start, floats, lines)
+    state[BEGUN], state[BEGIN] = 1.0, t
+    for k in range(sides):
+        tensions[k] = at_start[k]
+    hold(tensions, floats, lines)
+    for i in range(s):
+        own, mine = explicit[i * n : (i + 1) * n], damped[i * n : (i + 1) * n]
+        if i == 0:
+            for k in range(n):
+                y1[k] = y0[k]
+        else:
+            for k in range(n):
+                total = 0.0
+                for j in range(i):
+                    total += e[i * s + j] * explicit[j * n + k] + d[i * s + j] * damped[j * n + k]
+                wanted[k] = y0[k] + h * total
+            rounded = ROUNDING**2 * product(velocities, wanted, wanted, floats, numbers)
+            solved &= project(wanted, VELOCITY, floats, one)
+            for k in range(n):
+                y1[k] = wanted[k]
+            a, exact = h * d[i * s + i], max(EXACT, SHARE * tolerance)
+            for k in range(n):  # vertices go on from where they were as they went
+                y1[k] += a * damped[(i - 1) * n + k] if not first <= k < last else 0.0
+            solved = solved and by_tensions(
+                a, exact, rounded, wanted, y1, room, more, skins, state, floats, tables, numbers, lines
+            )
+            hold(tensions, floats, lines)
+        rate(t + nodes[i] * h, y1, own, floats, ints)
+        for k in range(n):
+            mine[k] = 0.0
+        spread(y1, mine, velocities, numbers[OPERATORS], floats, numbers)
+        for k in range(n):
+            own[k] -= mine[k]
+        directions(y1, along, lines)
+        for k in range(n):
+            wanted[k] = 0.0
+        pull(tensions, along, 1.0, y1, wanted, floats, lines, one)
+        for k in range(first, last):
+            own[k] -= wanted[k]
+        spread(y1, mine, 0, velocities, floats, numbers)
+        for k in range(first, last):
+            mine[k] += wanted[k]
+        hand_over(own, mine, lines)
+    for k in range(sides):
+        at_end[k] = tensions[k]
+    for k in range(n):
+        end[k] = y1[k]
+        total = error = beyond = 0.0
+        for j in range(s):
+            both = explicit[j * n + k] + damped[j * n + k]
+            total += b[j] * both
+            error += wrong[j] * both
+            beyond += (b[j] - e[(s - 1) * s + j]) * explicit[j * n + k]
+        y1[k] = y1[k] + h * beyond if first <= k < last else y0[k] + h * total
+        wanted[k] = h * error
+    solved &= project(y1, VELOCITY, floats, one) and project(wanted, CHANGE, floats, one)
+    solved &= quiet(h * d[s * s - 1], max(EXACT, SHARE * tolerance), end, y1, room, more, floats, tables, numbers)
+    solved &= project(y1, VELOCITY, floats, one)
+    for number in range(numbers[OPERATORS]):
+        tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
+    rate(t + h, y1, end_rate, floats, ints)
+    floats[one[SKIP]] = 0.0
+    for k in range(n):
+        end[k], spreading[k] = y1[k], 0.0
+    spread(y1, spreading, 0, velocities, floats, numbers)
+    for k in range(n):
+        rate1[k] = end_rate[k] + spreading[k]
+    settings[latest] = t + h
+    if not (project(rate1, RATE, floats, one) and solved):
+        y1[one[AT]] = math.nan
+    worst = 0.0
+    for block in range(numbers[BLOCKS]):
+        place = numbers[FLOW_AT] - 2 * numbers[BLOCKS] + 2 * block
+        at, count = numbers[place], numbers[place + 1]
+        total = 0.0
+        size, had = sizes[block], sizes[block]
+        for k in range(at, at + count):
+            total += wanted[k] * wanted[k]
+            had = max(had, abs(y0[k]))
+            size = max(size, abs(y0[k]), abs(y1[k]))
+        if not math.isfinite(total):
+            return math.inf
+        # What grows out of nothing, as t^2, has the same error at any length of its first step in parts of what it is.
+        part = tolerance if had > 0.0 else 1.0
+        if size > 0.0 and count > 0:
+            worst = max(worst, math.sqrt(total / count) / (part * size))
+    if worst <= 1.0:
+        for block in range(numbers[BLOCKS]):
+            place = numbers[FLOW_AT] - 2 * numbers[BLOCKS] + 2 * block
+            for k in range(numbers[place], numbers[place] + numbers[place + 1]):
+                sizes[block] = max(sizes[block], abs(y1[k]))
+    return worst

@@ -1,0 +1,1 @@
+"""Skins that touch objects, one another, themselves."""
