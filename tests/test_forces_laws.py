@@ -118,6 +118,23 @@ solvers: {{main: {{dopri5: {{tolerance: 1e-12}}}}}}
     assert v == pytest.approx(-0.75)
 
 
+def test_charges_of_several_models_stand_in_one_list_in_the_order_of_the_models(tmp_path):
+    # Places (0, 0), (1, 0), (0, 1); charges 1, -2, 1.5; masses 1, 2, 3; k = 0.1, by Coulomb's law.
+    script = """
+clock: {end: 1 s}
+models:
+  a: {particles: {list: {p: {mass: 1 kg}, q: {mass: 2 kg, position: 1 0 0 m}}}}
+  b: {particles: {list: {r: {mass: 3 kg, position: 0 1 0 m}}}}
+forces: [{electrostatic: {ON: charge: [CHARGES], constant: 0.1 N*m^2/C^2}}]
+"""
+    for on, charges in (("[a, b]", "1 C, -2 C, 1.5 C"), ("[b, a]", "1.5 C, 1 C, -2 C")):
+        text = script.replace("ON:", f"on: {on},").replace("CHARGES", charges)
+        ((of_a, of_b),) = watch(tmp_path, text, [0], "a.accelerations", "b.accelerations")
+        side = 0.1 * 2 * 1.5 / 2**1.5
+        np.testing.assert_allclose(of_a, [[0.2, -0.15, 0], [-0.2 / 2 - side / 2, side / 2, 0]], rtol=0, atol=1e-15)
+        np.testing.assert_allclose(of_b, [[side / 3, 0.15 / 3 - side / 3, 0]], rtol=0, atol=1e-15)
+
+
 def test_a_charge_runs_round_in_a_magnetic_field_and_drifts_across_an_electric_one(tmp_path):
     script = """
 clock: {end: 2 s}

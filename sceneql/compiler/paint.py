@@ -118,6 +118,10 @@ _TINT = re.compile(r"(light|pale|dark|deep)[-_ ]?([a-z]+)")
 """A shade as one says it, of which CSS names some alone."""
 
 
+SQUARES = ("checker", "checkers", "checkered", "checkerboard", "chequered", "chess", "chessboard", "squares", "tiles")
+"""Patterns of squares as other programs call them."""
+
+
 def _meant(text: str) -> str:
     """The help for a text that is no color."""
     *_, last = text.split() or [""]
@@ -132,6 +136,8 @@ def _meant(text: str) -> str:
         mixed = [share * one + 1 - share for one in css_color(tint[2]) or ()]
         mixed = [0.5 * one for one in mixed] if tint[1] in ("dark", "deep") else mixed
         return f"this is no CSS name: {_of_bytes(mixed)}"
+    if text.lower().replace(" ", "").replace("_", "") in SQUARES:
+        return "squares of two colors are a material: `material: checker` stands in place of the color"
     near = suggestion("".join(text.split()), NAMED) if len(text.split()) == 1 else None
     if "".join(text.split()).lower() in NAMED:
         near = f"did you mean '{''.join(text.split()).lower()}'?"

@@ -299,7 +299,7 @@ def _items(expr: Expr) -> list[Expr]:
 
 def _repeated(expr: Expr, wanted: Quantity) -> str | None:
     """The help where one value is given for a vector."""
-    size = (wanted.shape or (None,))[0]
+    size = (wanted.shape or (None,))[0] or (2 if wanted.dimension == LENGTH else None)
     if not suits(expr.type.dimension, wanted.dimension):
         return None
     if expr.type.shape or expr.span is None or len(wanted.shape or ()) != 1 or size is None:

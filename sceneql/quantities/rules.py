@@ -11,7 +11,7 @@ from fractions import Fraction
 from math import prod
 
 from sceneql.quantities.dimension import PLAIN, TIME, Dimension, common
-from sceneql.quantities.expression import Call, Expr, Number, Shape, Symbol, Type
+from sceneql.quantities.expression import Call, Expr, Number, Shape, Symbol, Type, Vector
 from sceneql.quantities.units import describe, format_quantity, unit_of
 
 Args = tuple[Expr, ...]
@@ -91,6 +91,10 @@ def _differ(args: Args, first: int, second: int, sentence: str) -> MismatchError
             # A number by name, such as a copy's, keeps its name.
             named = arg.span is not None and arg.span.text.isidentifier()
             better = index, f"{{}}*{format_quantity(1.0, other)}" if named else format_quantity(arg.value, other)
+        elif isinstance(arg, Vector) and other is not None and not other.plain:
+            items = [one.value for one in arg.items if isinstance(one, Number) and one.bare]
+            if len(items) == len(arg.items):
+                better = index, f"[{', '.join(format_quantity(one, other) for one in items)}]"
     message = sentence.format(a=describe(kinds[0]), b=describe(kinds[1]))
     return MismatchError("dimension-mismatch", message, first, second, better=better)
 

@@ -25,9 +25,12 @@ def in_parts(table: Mapping) -> str | None:
     """Keys in percent of the whole, as in CSS, at times until the clock's end; None for other keys."""
     end, unit = end_of(table.source.text)
     told = []
+    known = {**FIRST, **LAST}
+    if any(_PERCENT.fullmatch(name) for name in table.entries):
+        known["0"] = 0.0
     for name, node in table.entries.items():
         percent = _PERCENT.fullmatch(name)
-        part = float(percent[1]) / 100.0 if percent else {**FIRST, **LAST}.get(name)
+        part = float(percent[1]) / 100.0 if percent else known.get(name)
         if part is None:
             return None
         told.append(f"{part * end:.6g} {unit}: {node.span.text}")

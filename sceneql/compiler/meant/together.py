@@ -179,13 +179,28 @@ def _members(name: str, unknown: Sequenced[str], node: Mapping, known: Collectio
     texts = [node.entries[one].span.text for one in unknown]
     if "of" not in known or "of" in node.entries or "blend" not in known or len(texts) < FEWEST:
         return None
-    return f"write `of: [{', '.join(texts)}]`" if all(one.isidentifier() for one in texts) else None
+    if all(one.isidentifier() for one in texts):
+        return f"write `of: [{', '.join(texts)}]`"
+    words = [node.entries[one] for one in unknown]
+    if not all(
+        isinstance(one, Mapping) and len(one.entries) == 1 and isinstance(next(iter(one.entries.values())), Mapping)
+        for one in words
+    ):
+        return None
+    return f"write `of: [{', '.join(one_line(one) for one in words)}]`"
 
 
 def _states(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
     """The help for states and their rates without the fields around them: ``theta: 1, d(theta)/dt: omega``."""
     both = ("start", "rate")
-    if not {*both} <= {*known} or {*both} & node.entries.keys() or any(same_as(one, both) for one in unknown):
+    if not {*both} <= {*known} or "rate" in node.entries:
+        return None
+    if isinstance(begun := node.entries.get("start"), Mapping):
+        told = {one: (_RATE.fullmatch(one) or [one, one])[1] for one in unknown}
+        if not all(of.rstrip("'") in begun.entries for of in told.values()):
+            return None
+        return f"write `rate: {{{', '.join(f'{of}: {node.entries[one].span.text}' for one, of in told.items())}}}`"
+    if "start" in node.entries or any(same_as(one, both) for one in unknown):
         return None
     if (entries := [_state(node.entries[one]) for one in unknown]) and all(entries):  # `y: {initial: 1, rate: -y}`
         given = [(one, *pair) for one, pair in zip(unknown, entries, strict=True) if pair is not None]

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
-from sceneql.bodies.charges import Charges, each
+from sceneql.bodies.charges import Charges, each_of_all
 from sceneql.island.static_rates import On, number, pulled
 from sceneql.kinds import FixedLength, Force, Quantity, Value, field
 from sceneql.kinds.stable_step import Oscillation, StaticMass
@@ -28,7 +28,9 @@ class Electrostatic(Force):
 
     mutual: ClassVar[bool] = True
 
-    charge: Charges = field("Charge of every mass, or a list with one for each of each model.")
+    charge: Charges = field(
+        "Charge of every mass, or a list with one for each, those of the first model first (the order of `on`)."
+    )
     constant: Annotated[Value, Quantity(dim.FORCE * dim.AREA / CHARGE**2)] = field(
         "Coulomb's constant k.", "8.9875517862e9 N*m^2/C^2"
     )
@@ -65,7 +67,7 @@ class Electrostatic(Force):
             constant_at=assembly.value(self.constant),
             softening=self.softening,
             opening=0.0,
-            weights=[each(assembly, self.charge, bodies.count, "charge") for bodies in everyone],
+            weights=each_of_all(assembly, self.charge, [bodies.count for bodies in everyone], "charge"),
         )
         pairs.add(assembly, everyone, assembly.line())
 
