@@ -36,6 +36,17 @@ def test_a_torn_spring_lets_go_and_its_energy_is_counted(tmp_path):
     assert v[0] == pytest.approx(math.sqrt(9 - lost), rel=1e-9)
 
 
+def test_a_spring_tears_where_it_reaches_its_length_if_a_tolerance_chooses_the_steps(tmp_path):
+    """x = 1 + 0.6 sin 5t up to 1.4, then at the speed that is left."""
+    script = TETHER.replace("rk4: {step: 1 ms}", "dop853: {tolerance: 1e-11}")
+    ((lost, place, v),) = watch(
+        tmp_path, script, [1], "sling.dissipated", "sling.stone.position", "sling.stone.velocity"
+    )
+    assert lost == pytest.approx(4, rel=1e-8)
+    assert v[0] == pytest.approx(math.sqrt(5), rel=1e-8)
+    assert place[0] == pytest.approx(1.4 + math.sqrt(5) * (1 - math.asin(2 / 3) / 5), rel=1e-8)
+
+
 def test_what_is_torn_is_neither_drawn_nor_stretched(tmp_path):
     ((ends, stretch),) = watch(tmp_path, TETHER, [1], "sling.springs", "sling.stretch")
     assert len(ends) == stretch == 0

@@ -71,3 +71,13 @@ def test_steps_that_follow_the_error_are_those_of_the_flow_once_swings_are_over(
 def test_skins_that_cannot_be_implicit_are_told(tmp_path, law):
     with pytest.raises(ScriptError, match=r"no flat skin of springs.*\n(.*\n)*.*write `skins: explicit`"):
         ballooned(tmp_path, law, solver=solver_of("implicit")).at(0.01)
+
+
+def test_the_step_of_implicit_skins_is_told_to_be_stable(tmp_path):
+    """By the spectrum of the island, as `explain` has it, and by `check` before."""
+    stable = {}
+    for skins in ("explicit", "implicit"):
+        air = ballooned(tmp_path, law_of(1e5), solver=solver_of(skins, "10 ms"), spacing="1/32 m")
+        turn = np.array([[0.0, 2e4], [-2e4, -1.0]])
+        stable[skins] = air.tasks["main"].kind.growth(turn, None, 0.01) <= 1.0, not list(air.graph.warnings)
+    assert stable == {"explicit": (False, False), "implicit": (True, True)}

@@ -34,7 +34,10 @@ ROPE_BEAD = 1.6
 
 
 class Tear(Record):
-    """When springs break, for good: at the end of the solver's step in which one is stretched too far."""
+    """When springs break, for good: at the end of the solver's step in which one is stretched too far.
+
+    Of at most 100 springs that step ends where this comes, if a tolerance chooses it and no contact is there.
+    """
 
     at: kinds.FixedScalar = field("Its length then, as a part of its rest length.", "1.5", above=1)
     variation: kinds.FixedScalar = field(
@@ -225,7 +228,7 @@ class SpringModel(Model):
             energy="sceneql.bodies.mass_spring_energy_kernels:potential",
             damped=damped,
         )
-        torn_at = assembly.floats([0.0])
+        torn_at = assembly.floats([0.0, 0.0])
         if self.tear is not None:
             luck = draws(np.arange(m, dtype=np.uint64), 0, chance_key(name, self.tear.seed))
             strains = (self.tear.at - 1) * (1 + self.tear.variation * (2 * luck - 1))

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import KEYS, check
+from sceneql.compiler.magnitudes.amiss import warn_of_magnitudes
 from sceneql.compiler.meaning.doubtful import warn_of_meaning, warn_of_unused_parts
 from sceneql.compiler.meaning.facts import Facts
 from sceneql.compiler.meaning.listed_masses import report_masses
@@ -128,6 +129,7 @@ def compile_script(
     warn_of_dim(checked.tasks, found)
     facts = Facts(script, checked.settings, tasks, groups, drawn, cameras)
     warn_of_meaning(facts, found)
+    warn_of_magnitudes(facts, found)
     found.raise_errors()
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)
     expected = {link.task for value in values_of(checked.settings.expect) for link in value.links}

@@ -10,7 +10,7 @@
     python tests/bench/bench_skins.py capsule 12 10   rubber in shear: deformation, cells a radius, radii between walls
     python tests/bench/bench_skins.py bag 96          bag of heavy fluid on a floor, cells a side
     python tests/bench/bench_skins.py fall 96         circle that begins to fall, cells a side and half
-    python tests/bench/bench_skins.py stiff 1e5          implicit skins beside explicit ones, stretch [N/m]
+    python tests/bench/bench_skins.py stiff 1e5       implicit skins beside explicit ones, stretch [N/m]
     python tests/bench/bench_skins.py share 64        a skin's part of a step's time there
 
 Sources: Tu & Peskin (1992), SIAM J. Sci. Stat. Comput. 13, 1361-1376, for the relaxing ring. The frequency and damping

@@ -12,7 +12,7 @@ from sceneql.kinds import Formula, Interaction, Model
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.expression import Number
 
-SEEN = 0.2
+SEEN = 1.0
 """Part of a cell by which a wave has to run to be seen."""
 GONE = 20.0
 """Decay from frame to frame, as an exponent, at which nothing is left in the second."""
@@ -82,9 +82,7 @@ def _rates(facts: Facts, task: Task, sides: list[float], found: Diagnostics) -> 
     slower = "`clock: {{end: {0:.2g} s, speed: {1:.2g}}}`"
     if speed > 0.0 and source is None and getattr(kind, "velocity", None) is None:
         if speed * end < SEEN * kind.cell:
-            text = (
-                f"waves of '{task.name}' run {speed * end:.2g} m until {end:g} s, far less than a cell: nothing moves"
-            )
+            text = f"waves of '{task.name}' run {speed * end:.2g} m until {end:g} s, less than a cell: nothing moves"
             help = f"write a larger `speed`, as `speed: {longest / end:.2g} m/s`, or a longer clock"
             found.warning("nothing-moves", text, kind.speed.span or task.span, help=help)
         elif speed * frame > longest:

@@ -82,7 +82,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     )
 
 
-def growth(decay: float, turn: float, step: float) -> float:
+def growth(decay: complex, turn: float, step: float) -> float:
     """Growth factor of a step for y' = -decay y + i turn y, the first part implicit, the second explicit."""
     implicit, explicit = -step * decay, 1j * step * turn
     stages: list[complex] = []

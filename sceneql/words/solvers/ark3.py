@@ -44,9 +44,11 @@ class Ark3(Solver):
         return additive.stepper(self.tolerance, self.step, self.largest_step)
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
-        """Largest of the modes', whose decay is implicit and whose turning explicit."""
+        """Largest of the modes', whose decay is implicit and whose turning explicit, or with implicit skins is, too."""
         from sceneql.flows.schemes import additive, multistep
 
+        if self.skins == "implicit":
+            return multistep.largest_growth(jacobian, lambda decay, turn: additive.growth(decay - 1j * turn, 0.0, step))
         return multistep.largest_growth(jacobian, lambda decay, turn: additive.growth(decay, turn, step))
 
     def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:

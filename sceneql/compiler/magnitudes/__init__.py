@@ -1,0 +1,1 @@
+"""Numbers that are a hundred or a thousand times off."""
