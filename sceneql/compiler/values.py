@@ -9,6 +9,7 @@ from dataclasses import replace
 from sceneql.compiler.keyframes import ReadTime, read_keys
 from sceneql.compiler.limits import numbers
 from sceneql.compiler.meant.factors import each_by_unit, is_zero, remedy
+from sceneql.compiler.meant.together import times_meant
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
 from sceneql.compiler.vector_fields import TURN, keys_meant, pair_meant, timed, vector_meant_by
@@ -108,7 +109,7 @@ def read_expr(
                 return _by_component(node, dimension, what, names, found)
             texts = [item.span.text for item in node.entries.values() if isinstance(item, Scalar)]
             listed = (shape is None or shape[:1] == (None,)) and len(texts) == len(node.entries)
-            help = timed(node) or (pair_meant(node, dimension) if shape == (2,) else None)
+            help = times_meant(node, what) or timed(node) or (pair_meant(node, dimension) if shape == (2,) else None)
             help = help or (f"write `[{', '.join(texts)}]`" if listed else None)
             help = f"a name has one value: write `{node.span.text[1:-1]}`, each by itself" if what == "define" else help
             found.error("wrong-shape", f"{what} is a value, not a group of fields", node.span, help=help)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection
+from collections.abc import Mapping as Naming
 from collections.abc import Sequence as Sequenced
 
 from sceneql.compiler.meant.own_values import in_si, numbers_with_unit
@@ -267,8 +268,19 @@ def _shown(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[
     """The help for the times from when and to when something is to be seen."""
     if not {"show", "fade"} <= {*known} or "show" in node.entries or name not in (*BEGINS, *ENDS):
         return None
-    first = next((node.entries[one].span.text for one in unknown if one in BEGINS), None)
-    last = next((node.entries[one].span.text for one in unknown if one in ENDS), None)
+    return _between({one: node.entries[one].span.text for one in unknown})
+
+
+def times_meant(node: Mapping, what: str) -> str | None:
+    """The help for `show` with the times from when and to when, ``show: {from: 1 s, to: 3 s}``."""
+    texts = {one: value.span.text for one, value in node.entries.items()}
+    return _between(texts) if what == "show" and {*texts} <= {*BEGINS, *ENDS} else None
+
+
+def _between(texts: Naming[str, str]) -> str | None:
+    """The help for something that is to be seen from one time, or to one, by names of other programs for these."""
+    first = next((text for one, text in texts.items() if one in BEGINS), None)
+    last = next((text for one, text in texts.items() if one in ENDS), None)
     after = None if first is None or first.strip("0. ") in ("", "s") else f"(time > {first})"
     before = None if last is None else f"(time < {last})"
     if after is None and before is None:
