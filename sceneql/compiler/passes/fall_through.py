@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, cast
 
 from sceneql.compiler.passes.fillings import Beginning
@@ -19,6 +21,8 @@ Start = tuple[tuple[float, ...], tuple[float, ...], float]
 
 INSTANTS = 64
 """Number of instants at which a mass is looked for in a solid."""
+FINE = 8
+"""Steps between two instants where there is drag."""
 MOST = 32
 """Largest number of masses of a model that are looked at, the first ones."""
 RADIUS = 0.05
@@ -42,23 +46,27 @@ def warn_of_falling_through(
     for island in groups if 0 < len(solids) <= MOST_OBJECTS else ():
         for name in island.models:
             forces = [cast(Interaction, tasks[force].kind) for force, model in island.forces if model == name]
-            pull = pull_of(forces)
-            if pull is None or tasks[name].span is None:
+            fall = _fall_of(forces, cast(Model, tasks[name].kind))
+            if fall is None or tasks[name].span is None:
                 continue
             touched = {one: others for one, model, others in island.contacts if model == name}
             known = {other for others in touched.values() for other in others}
             known |= {ref.name for one in touched for ref in cast(Contact, tasks[one].kind).ties()} - {name}
-            unknown = [tasks[one].kind for one in known - stand.keys() if one in tasks]
-            if set(solids) <= known or not all(getattr(kind, "list", None) for kind in unknown):
-                continue  # where it meets what is hidden, or moves, is not known; single masses do not hold it up
+            unknown = [one for one in known - stand.keys() if one in tasks]
+            if set(solids) <= known or not (
+                all(getattr(tasks[one].kind, "list", None) for one in unknown)
+                or (not known & stand.keys() and _all_fall(unknown, tasks, island))
+            ):
+                continue  # where it meets what is hidden, or moves, is not known; what falls too does not hold it up
             starts = starts_of(cast(Model, tasks[name].kind), tasks, start)[:MOST]
-            hit = _first_hit(starts, pull, end, solids, boxes, known, start)
+            hit = _first_hit(starts, fall, end, solids, boxes, known, start)
             if hit is not None and hit[0] not in known:
-                contact = next(iter(touched), None)
+                contact = next(iter(touched), None) or _of(hit[0], tasks)
                 of_it = "no contact acts on it" if contact is None else f"'{contact}' is not of both"
                 text = f"'{name}' falls into '{hit[0]}' at {hit[1]:.2g} s, and through it: {of_it}"
                 between = [ref.name for ref in cast(Contact, tasks[contact].kind).ties()] if contact else []
-                help = f"name it there, `between: [{', '.join([*between, hit[0]])}]`" if contact else HELP
+                more = [one for one in (name, hit[0]) if one not in between]
+                help = f"name it there, `between: [{', '.join([*between, *more])}]`" if contact else HELP
                 found.warning("falls-through", text, tasks[name].span, help=help)
 
 
@@ -117,6 +125,97 @@ def pull_of(forces: Sequence[Interaction]) -> tuple[float, ...] | None:
     return total if any(total) else None
 
 
+@dataclass(frozen=True)
+class Fall:
+    """What moves a mass that falls."""
+
+    pull: tuple[float, ...]
+    """Acceleration (3,) [m/s^2]."""
+    linear: float = 0.0
+    """Drag for a speed, over the mass [1/s]."""
+    quadratic: float = 0.0
+    """Drag for a squared speed, over the mass [1/m]."""
+    blows: tuple[tuple[float, tuple[float, ...]], ...] = ()
+    """Instants [s] and changes of the velocity (3,) [m/s]."""
+
+    def way(self, place: Sequence[float], velocity: Sequence[float], times: Sequence[float]) -> list[tuple[float, ...]]:
+        """Places (3,) [m] at some times [s], the first of them 0: parabolas where there is nothing but a pull."""
+        if not (self.linear or self.quadratic or self.blows):
+            return [
+                tuple(p + v * t + 0.5 * g * t * t for p, v, g in zip(place, velocity, self.pull, strict=True))
+                for t in times
+            ]
+        x, v, found = [*place], [*velocity], [tuple(place)]
+        for before, now in pairwise(times):
+            for one in range(FINE):
+                at, h = before + (now - before) * one / FINE, (now - before) / FINE
+                rate = self.linear + self.quadratic * sum(c * c for c in v) ** 0.5
+                for k in range(3):
+                    blown = sum(change[k] for instant, change in self.blows if at < instant <= at + h)
+                    after = (v[k] + blown + h * self.pull[k]) / (1.0 + h * rate)
+                    x[k] += 0.5 * h * (v[k] + after)
+                    v[k] = after
+            found.append(tuple(x))
+        return found
+
+
+def _fall_of(forces: Sequence[Interaction], kind: Model) -> Fall | None:
+    """How masses of a model fall by weights, drags of resting air and blows, all constant; None for other forces."""
+    weights = [one for one in forces if one.weighs]
+    others = [one for one in forces if not one.weighs]
+    if (pull := pull_of(weights)) is None:
+        return None
+    if not others:
+        return Fall(pull)
+    bodies = getattr(kind, "bodies", None) or {"": kind}
+    masses: set[Any] = {mass.mass for mass in kind.static_masses().values()}
+    masses = masses or {getattr(one, "mass", None) for one in bodies.values()}
+    mass = masses.pop() if len(masses) == 1 else None
+    linear = quadratic = 0.0
+    blows = []
+    for one in others:
+        slow, fast = getattr(one, "linear", None), getattr(one, "quadratic", None)
+        value, at = getattr(one, "value", None), getattr(one, "at", None)
+        if isinstance(value, Value) and value.constant and isinstance(at, float) and isinstance(mass, float):
+            blows.append((at, tuple(float(c) / mass for c in value.number())))
+        elif (
+            isinstance(slow, Value)
+            and isinstance(fast, Value)
+            and slow.constant
+            and fast.constant
+            and not {"velocity", "circulation", "size"} & type(one).model_fields.keys()
+            and isinstance(mass, float)
+        ):
+            linear += float(slow.number()) / mass
+            quadratic += float(fast.number()) / mass
+        else:
+            return None
+    return Fall(pull, linear, quadratic, tuple(blows))
+
+
+def _of(solid: str, tasks: Mapping[str, Task]) -> str | None:
+    """The first contact that names a solid, or is of all things."""
+    contacts = {name: task.kind for name, task in tasks.items() if isinstance(task.kind, Contact)}
+    return next((name for name, kind in contacts.items() if solid in {ref.name for ref in kind.ties()}), None)
+
+
+def _all_fall(names: Sequence[str], tasks: Mapping[str, Task], island: Island) -> bool:
+    """Whether some parts are models of an island, or objects that these move, with a weight and with nothing held."""
+    weighed = {model for force, model in island.forces if cast(Interaction, tasks[force].kind).weighs}
+    movers = {need for name in names for need in (name, *tasks[name].needs) if isinstance(tasks[need].kind, Model)}
+    tied = {model for force, model in island.forces if isinstance(tasks[force].kind, Tie)}
+    kinds = [tasks[one].kind for one in movers]
+    bodies = [body for kind in kinds for body in (getattr(kind, "bodies", None) or {"": kind}).values()]
+    held = any(getattr(kind, field, None) for kind in kinds for field in HOLDING)
+    fixed = held or any(getattr(body, "fixed", False) for body in bodies)
+    return (
+        bool(movers)
+        and movers <= weighed - tied
+        and not fixed
+        and all(name in movers or movers & {*tasks[name].needs} for name in names)
+    )
+
+
 def starts_of(kind: Model, tasks: Mapping[str, Task], start: Any) -> list[Start]:
     """Places [m], velocities [m/s] and reaches [m] of what falls as stones do; none where something holds it."""
     known = kind.static_masses()
@@ -153,21 +252,21 @@ def _started(kind: Any, tasks: Mapping[str, Task], start: Any) -> Iterator[Start
 
 def _first_hit(
     starts: Sequence[Start],
-    pull: tuple[float, ...],
+    fall: Fall,
     end: float,
     solids: Mapping[str, Any],
     boxes: dict[str, Any],
     touched: Collection[str],
     start: Any,
 ) -> tuple[str, float] | None:
-    """The solid that is first on the parabolas of masses that start outside of it, and the instant [s].
+    """The solid that is first on the ways of masses that start outside of it, and the instant [s].
 
     Those that they touch are met as soon as they are in reach.
     """
     times = [end * k / (INSTANTS - 1) for k in range(INSTANTS)]
     hits = []
     for place, velocity, reach in starts:
-        way = [tuple(p + v * t + 0.5 * g * t * t for p, v, g in zip(place, velocity, pull, strict=True)) for t in times]
+        way = fall.way(place, velocity, times)
         for name, solid in solids.items():
             if name not in boxes:
                 boxes[name] = _box(solid, start)
