@@ -62,6 +62,9 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
                 found.error("unknown-color", f"'{text}' is no color", node.span, help=_meant(text))
                 return None
             return Value(Vector(tuple(Number(c) for c in components), RGB), node.span)
+    if isinstance(node, Scalar) and (mixed := _mixed(node.text)) is not None:
+        found.error("unknown-color", f"'{node.text.strip()}' is no color", node.span, help=mixed)
+        return None
     if (several := _several(node, names)) is not None:
         found.error("wrong-shape", "color is one color, not several", node.span, help=several)
         return None
@@ -116,6 +119,20 @@ def _is_name(text: str) -> bool:
 
 _TINT = re.compile(r"(light|pale|dark|deep)[-_ ]?([a-z]+)")
 """A shade as one says it, of which CSS names some alone."""
+
+
+_TIKZ = re.compile(r"([a-z]+)!(\d+)(?:!([a-z]+))?")
+
+
+def _mixed(text: str) -> str | None:
+    """The help for a mixture of two colors as in TikZ, ``red!50!white`` or ``red!50``, else None."""
+    if (told := _TIKZ.fullmatch(text.strip().lower())) is None:
+        return None
+    first, second = css_color(told[1]), css_color(told[3] or "white")
+    if first is None or second is None or float(told[2]) > 100:
+        return None
+    share = float(told[2]) / 100
+    return _of_bytes([share * a + (1 - share) * b for a, b in zip(first, second, strict=True)])
 
 
 SQUARES = ("checker", "checkers", "checkered", "checkerboard", "chequered", "chess", "chessboard", "squares", "tiles")

@@ -210,6 +210,23 @@ OF_FORMULAS = (
 
 OF_NAMED = (
     (
+        "field.solvers",
+        "tolerance rtol atol tol",
+        "its steps have one length, `step: 1 ms`; by a tolerance goes `{dopri5: {tolerance: 1e-6}}`",
+    ),
+    (
+        "field.cloth",
+        "self_collision selfcollision self_collisions self_collide self_contact",
+        "what touches itself is a contact: write `contacts: [mutual_collision]`",
+    ),
+    (
+        "field.mass_spring field.cloth",
+        "young youngs_modulus young_modulus modulus elastic_modulus E",
+        "it has springs, each with a `stiffness`: of a rod it is modulus times area over length, `100 N/m`",
+    ),
+    ("field.arrow", "along direction dir of value", "what it shows is its `vector: ball.velocity`"),
+    ("field.arrow", "length size factor", "it is its vector times `scale`, in meters: of a velocity `scale: 0.1 s`"),
+    (
         "field.emit",
         "size diameter width scale",
         "they have one size, beside `emit`: half of it is their `radius: 1 cm`",
