@@ -45,7 +45,14 @@ class Spring(Force):
     def problems(self) -> Iterator[Problem]:
         """Two ends without a mass."""
         if not self.targets():
-            yield Problem("a spring needs a mass at one of its ends, as `from: cage.corner.position`")
+            links = [end.expr for end in (self.from_, self.to) if isinstance(end.expr, Link)]
+            solid = (
+                "a solid of elements has none: what pulls it is among its `loads`, by place, as `{tip: {near: 1 0 0 m, "
+            )
+            solid += "within: 5 cm, force: 0 -5 0 N}}`"
+            mass = "what moves it is a model: write `from: NAME.position`, of `particles`, `rigid` or `mass_spring`"
+            text = "a spring needs a mass at one of its ends, as `from: cage.corner.position`"
+            yield Problem(text, help=solid if links else mass)
 
     def targets(self) -> tuple[str, ...]:
         """The models of the masses at its ends."""
