@@ -122,12 +122,6 @@ def _by_path(root: Mapping, name: str, patches: Node) -> str:
     if name in known and items:
         told = ", ".join(f"{name}_{k}: {{define.{name}: {text}}}" for k, text in enumerate(items, 1))
         return f"each variant has a name, and the value by its path: write `variants: {{{told}}}`"
-    if (
-        isinstance(patches, Scalar)
-        and name.removesuffix("s") in ("solver", "integrator")
-        and patches.text.isidentifier()
-    ):
-        return f"write `{name}: {{solvers.main: {patches.text}}}`"
     given = re.fullmatch(r"[\"']?(\w+)\s*[=:]\s*([^\"']+)[\"']?", patches.span.text)
     if given is not None and given[1] in known:
         return f"write `{name}: {{define.{given[1]}: {given[2]}}}`"

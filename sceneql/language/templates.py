@@ -153,6 +153,13 @@ class _Expander:
                 if name == "time":
                     message = "'time' is the time of the film's moments, and cannot name anything else"
                     self.found.error("part-name", message, written.span)
+                if key == "define" and name[:1].isdigit() and "." not in name:
+                    message = f"'{name}' cannot be the name of a value"
+                    better = re.sub(r"^(\d+)_*(\w*)$", r"\2\1", name)
+                    help = f"a name begins with a letter: write `{better}`, here and where it is used"
+                    self.found.error("part-name", message, written.span, help=help)
+                    for part in (name, name.lstrip("0123456789_"), better):
+                        self.done.broken.add(part)
                 if name in seen:
                     duplicate(name, seen[name], written, self.found)
                 else:

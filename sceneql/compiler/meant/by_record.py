@@ -53,10 +53,10 @@ def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> st
     sweep = node.entries.get("sweep")
     if "sweep" in known and isinstance(sweep, Scalar) and (path := swept(reader, node.entries, sweep.text)) is not None:
         return path
-    if (carrier := carried(reader, cls, name, node)) is not None:
-        return carrier
     if (told := by_value(reader, cls, name, node)) is not None:
         return told
+    if (carrier := carried(reader, cls, name, node)) is not None:
+        return carrier
     if not issubclass(cls, kinds.Kind):
         return None
     if issubclass(cls, kinds.Object):

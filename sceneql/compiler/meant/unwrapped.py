@@ -78,6 +78,6 @@ def _size(text: str, family: str, word: str, catalogue: Catalogue) -> str | None
     count, cls = len(text.split()) - (text[-1:].isalpha()), catalogue.load(family, word)
     shape = () if count == 1 else (count,)
     for name, info in cls.model_fields.items() if cls is not None else ():
-        if any(mark.shape == shape and mark.dimension == LENGTH for mark in quantities(info)):
+        if name != "position" and any(mark.shape == shape and mark.dimension == LENGTH for mark in quantities(info)):
             return written_name(name)
     return None
