@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 OF_ELEMENTS = (
-    "it holds one mass of a model, `cage.corner.position`; what pulls a solid of elements is among its `loads`, by place:"
+    "it holds one mass of a model, `cage.corner.position`; what pulls a solid of elements is among its `loads`:"
     " `loads: {tip: {near: 1 0 0 m, within: 5 cm, force: 0 -5 0 N}}`"
 )
 """The help where neither end is a mass."""
