@@ -94,7 +94,10 @@ def together(name: str, unknown: Sequenced[str], node: Mapping, known: Collectio
 def _compared(name: str, node: Mapping, known: Collection[str]) -> str | None:
     """The help for a comparison under a name of other programs, where its sides stand apart: ``assert: a < b``."""
     sides = _BELOW.fullmatch(node.entries[name].span.text.strip("\"'"))
-    if sides is None or not {"of", "below"} <= {*known} or {"of", "below", "value"} & node.entries.keys():
+    value, others = node.entries[name], node.entries.keys() & {*known}
+    if isinstance(value, Scalar) and value.quoted:
+        return None  # told as one value, one level further in
+    if sides is None or not {"of", "below"} <= {*known} or not others or others & {"of", "below", "value"}:
         return None
     of, sign, limit = sides[1].strip(), sides[2], sides[3].strip()
     of, limit = (limit, of) if ">" in sign else (of, limit)
