@@ -76,8 +76,9 @@ class Reader:
         elif node is not None and broken(node):
             raise Unreadable
         elif node is not None and not (isinstance(node, Scalar) and node.kind == "null"):
-            fields = ", ".join(map(kinds.written_name, cls.model_fields))
-            help = without_dashes(node) or likely.field_meant(self, node, cls) or f"it has {fields}"
+            fields = list(map(kinds.written_name, cls.model_fields))
+            help = without_dashes(node, fields) or likely.field_meant(self, node, cls)
+            help = help or f"it has {', '.join(fields)}"
             raise self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span, help)
         symbols, solved = self.symbols, self.solved
         if isinstance(node, MappingNode) and issubclass(cls, kinds.Kind):

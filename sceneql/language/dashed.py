@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 
 from sceneql.language.one_line import one_line
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
@@ -27,9 +28,15 @@ def undashed(node: Node) -> str | None:
     return text if told and "\n" not in text and len(text) <= SHOWN else None
 
 
-def without_dashes(node: Node) -> str | None:
-    """The help for fields that stand behind dashes, `- of: ball`, where they stand by name."""
+def without_dashes(node: Node, known: Collection[str] | None = None) -> str | None:
+    """The help for fields that stand behind dashes, `- of: ball`, where they stand by name.
+
+    ``known``: the names of the fields, one of which has to be among them; None: any names.
+    """
     text = undashed(node)
+    items = node.items if isinstance(node, Sequence) else []
+    if known is not None and not any(name in known for one in items for name in getattr(one, "entries", ())):
+        return None
     dashes = isinstance(node, Sequence) and not node.flow
     told = "a dash begins an item of a list, and here stand" if dashes else "a list has no names, and here stand"
     return None if text is None else f"{told} names with values: write `{text}`"
