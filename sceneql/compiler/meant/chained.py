@@ -17,7 +17,7 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler.annotations import marks_of, quantities
 from sceneql.compiler.meant import quantity_help as helped
-from sceneql.compiler.meant.by_size import by_own_size
+from sceneql.compiler.meant.by_size import by_own_size, in_own_box
 from sceneql.compiler.meant.listed_states import listed_states
 from sceneql.compiler.meant.values_elsewhere import along_default, elsewhere, first_of, middle_of_ends
 from sceneql.compiler.names import Names
@@ -85,6 +85,7 @@ def better_alone(
     info = field_of(cls, name)
     helped.by_own_density(reader, written, before)
     by_own_size(reader, written, cls, name, before)
+    in_own_box(reader, written, before)
     if len(found) == before:
         return
     told = [(one.code, one.help) for one in found[before:]]
