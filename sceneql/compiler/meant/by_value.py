@@ -117,7 +117,8 @@ def _color(reader: Any, node: Node) -> str | None:
 
 def _corners(value: Node) -> str | None:
     """The low corner and the size of a box by two corners."""
-    items = [item.span.text for item in value.items] if isinstance(value, Sequence) else value.span.text.split(",")
+    inner = value.items if isinstance(value, Sequence) else value.entries.values() if isinstance(value, Mapping) else ()
+    items = [item.span.text for item in inner] or value.span.text.split(",")
     ends = [in_si(item) for item in items]
     if len(ends) != CORNERS or not ends[0] or len(ends[0]) != len(ends[1]):
         return None

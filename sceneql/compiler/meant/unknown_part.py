@@ -124,7 +124,7 @@ def part_meant(name: str, mark: Refers, choices: Sequenced[str], names: Names, c
     if (copy := copy_meant(name, {*choices, *names.parts})) is not None:
         return copy
     joined = [one.strip() for one in re.split(r"[-+&|*]", name)]
-    if len(joined) > 1 and all(one in choices for one in joined):
+    if len(joined) > 1 and all(one in choices for one in joined) and not mark.panel:
         return f"several stand in a list: write `[{', '.join(joined)}]`"
     if mark.bodies and name[:1] in "-[0123456789":
         return f"a place is no body: {beside_world(name)}"
