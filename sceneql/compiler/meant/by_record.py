@@ -70,7 +70,10 @@ def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> st
         if (around := _around(reader, cls, name, node)) is not None:
             return around
         plain = unwrapped(node, cls.family, reader.names.catalogue)
-        return balls_of(reader.names, node) if plain is None else f"{ANOTHER}: write `{plain}`"
+        if plain is not None:
+            return f"{ANOTHER}: write `{plain}`"
+        named = node.entries[name].span.text.removesuffix(".positions") in reader.names.parts
+        return balls_of(reader.names, node) if named else None
     told = _by_names(reader, cls, name, node) or _inside_one(cls, name, node) or _of_force(reader, cls, name, node)
     return told or _of_one(reader, cls, name, node) or _system(known, name, node) or _thrown(known, name, node)
 
