@@ -111,7 +111,12 @@ def _is_name(text: str) -> bool:
     """Whether a text gives a color by name, by digits, or by a call as in CSS and other languages."""
     called = text.startswith(("rgb(", "rgba(", "hsl(", "hsla("))
     words = all(word.isalpha() for word in text.split())
-    return called or words or text.isidentifier() or text.startswith("#") or _HEX.fullmatch(text) is not None
+    signs = text.startswith("#") or _HEX.fullmatch(text) is not None or _MIXED.fullmatch(text) is not None
+    return called or words or text.isidentifier() or signs
+
+
+_MIXED = re.compile(r"([a-z]+)!(\d+\.?\d*)(?:!([a-z]+))?")
+"""So many percent of a color in another, by default white, as TikZ writes it."""
 
 
 _TINT = re.compile(r"(light|pale|dark|deep)[-_ ]?([a-z]+)")
@@ -129,6 +134,11 @@ def _meant(text: str) -> str:
         return f'write `"#{digits[1].lower()}"`'
     if text.startswith(("rgb", "rgba")) and len(numbers := [float(one) for one in _DIGITS.findall(text)]) >= 3:
         return _of_bytes(numbers[:3])
+    if (mixture := _MIXED.fullmatch(text)) is not None:
+        first, other = (css_color(one) for one in (mixture[1], mixture[3] or "white"))
+        share = min(float(mixture[2]) / 100, 1.0)
+        if first is not None and other is not None:
+            return _of_bytes([share * a + (1 - share) * b for a, b in zip(first, other, strict=True)])
     if (help := _of_hue(text)) is not None:
         return help
     if (tint := _TINT.fullmatch(text.lower())) is not None and tint[2] in NAMED and "".join(tint.groups()) not in NAMED:

@@ -209,7 +209,10 @@ def section(name: str, node: Node, taken: Collection[str], found: Diagnostics) -
                 own = _free(written.word.text, result.entries.keys() | set(taken))
                 result.entries[own], result.keys[own] = item, written.word
     elif not (empty(node) or broken(node)):
-        help = f"write `{name}: [{node.text.strip('[] ')}]`" if node.kind == "text" else _ENTRY
+        words = [one for one in re.split(r"[\s,;]+-?|^-", node.text.strip("[] ")) if one]
+        plain = len(words) > 1 and all(map(str.isidentifier, words))  # lines without dashes, or without a space behind
+        listed = ", ".join(words) if plain else node.text.strip("[] ")
+        help = f"write `{name}: [{listed}]`" if node.kind == "text" else _ENTRY
         if (equated := _EQUATED.fullmatch(node.text.strip())) is not None:
             help = f"a name has a colon behind it: write `{equated[1]}: {equated[2]}`"
         if name == "outputs" and "." in node.text:
