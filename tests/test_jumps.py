@@ -48,6 +48,7 @@ def rays(seed, count=25):
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 10**6))
 @example(383313)  # a ray that crosses a jump of a branch that is not taken was left undecided
+@example(1002)  # as was one on which x + y comes to its jump 23 times as slowly as x does
 def test_rays_across_jumps_are_decided_as_samples_tell(text, seed):
     tape = tape_of(text)
     origins, directions = rays(seed)

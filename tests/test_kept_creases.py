@@ -5,10 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from sceneql.bodies.elements import filled
 from sceneql.bodies.elements.element_mesh import fine_rule, worst_angle
+from sceneql.bodies.filling import kept_creases, split_creases
 from sceneql.bodies.filling.kept_creases import creases_kept
 from sceneql.bodies.filling.stuffing import stuffed
 from sceneql.bodies.filling.tetrahedra import boundary, volumes
+from sceneql.words.objects.sphere import Sphere
+from sceneql.words.objects.torus import Torus
 from solids import Solid
 
 OBJECTS = {
@@ -156,3 +160,34 @@ def test_corners_inside_never_move():
     np.testing.assert_array_equal(moved[inner], cube.points[inner])
     assert volumes(cube.points, cube.tetrahedra).sum() < 0.99
     assert volumes(moved, cube.tetrahedra).sum() == pytest.approx(1.0, abs=5e-3)
+
+
+SMOOTH = {
+    "ball": ("sphere: {radius: 0.5 m}", 0.4),
+    "ring": ("torus: {radius: 1 m, tube: 0.4 m}", 0.4),
+    "egg": ("group: {scale: [1, 0.4, 2], children: {b: {sphere: {radius: 0.5 m}}}, rotation: {xyz: 30 0 0 deg}}", 0.4),
+}
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+def test_no_crease_is_searched_on_objects_known_to_have_none_and_the_search_finds_none(tmp_path, monkeypatch, name):
+    text, spacing = SMOOTH[name]
+    with monkeypatch.context() as at:
+        for module in (kept_creases, split_creases):
+            at.setattr(module, "onto_crease", lambda *_: pytest.fail("a crease is searched"))
+        quick = made(tmp_path, text, spacing, "p2")
+    filled._kept.clear()
+    for word in (Sphere, Torus):
+        monkeypatch.setattr(word, "smooth", lambda *_: False)
+    searched = made(tmp_path, text, spacing, "p2")
+    filled._kept.clear()
+    assert quick.points.tobytes() == searched.points.tobytes()
+    assert quick.cells.tobytes() == searched.cells.tobytes()
+
+
+def test_a_ring_without_a_hole_is_searched_for_its_dents(tmp_path, monkeypatch):
+    calls = []
+    monkeypatch.setattr(filled, "creases_kept", lambda *given: calls.append(given[-1]) or creases_kept(*given))
+    for tube in (0.2, 0.3):
+        made(tmp_path, f"torus: {{radius: 0.3 m, tube: {tube} m}}", 0.2)
+    assert calls == [True, False]

@@ -19,6 +19,7 @@ from sceneql.compiler.meant.misplaced import improve_sections
 from sceneql.compiler.meant.unknown import mover_of, report_unknown, word_having, word_meant
 from sceneql.compiler.meant.unknown_part import (
     beside_world,
+    of_law,
     other_family,
     part_meant,
     several_meant,
@@ -340,7 +341,7 @@ class _Checker:
             return None
         help = several_meant(node, mark, entry, self.catalogue) if isinstance(node, SequenceNode) else None
         if isinstance(node, MappingNode):
-            help = named or word_having(node, mark.family, self.catalogue)
+            help = named or word_having(node, mark.family, self.catalogue) or of_law(node, mark.family)
         self.found.error("entry-shape", message, node.span, help=help)
         return None
 

@@ -62,6 +62,9 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
                 found.error("unknown-color", f"'{text}' is no color", node.span, help=_meant(text))
                 return None
             return Value(Vector(tuple(Number(c) for c in components), RGB), node.span)
+    if isinstance(node, Scalar) and (mixed := _mixed(node.text)) is not None:
+        found.error("unknown-color", f"'{node.text.strip()}' is no color", node.span, help=mixed)
+        return None
     if (several := _several(node, names)) is not None:
         found.error("wrong-shape", "color is one color, not several", node.span, help=several)
         return None
@@ -111,16 +114,25 @@ def _is_name(text: str) -> bool:
     """Whether a text gives a color by name, by digits, or by a call as in CSS and other languages."""
     called = text.startswith(("rgb(", "rgba(", "hsl(", "hsla("))
     words = all(word.isalpha() for word in text.split())
-    signs = text.startswith("#") or _HEX.fullmatch(text) is not None or _MIXED.fullmatch(text) is not None
-    return called or words or text.isidentifier() or signs
-
-
-_MIXED = re.compile(r"([a-z]+)!(\d+\.?\d*)(?:!([a-z]+))?")
-"""So many percent of a color in another, by default white, as TikZ writes it."""
+    return called or words or text.isidentifier() or text.startswith("#") or _HEX.fullmatch(text) is not None
 
 
 _TINT = re.compile(r"(light|pale|dark|deep)[-_ ]?([a-z]+)")
 """A shade as one says it, of which CSS names some alone."""
+
+
+_TIKZ = re.compile(r"([a-z]+)!(\d+)(?:!([a-z]+))?")
+
+
+def _mixed(text: str) -> str | None:
+    """The help for a mixture of two colors as in TikZ, ``red!50!white`` or ``red!50``, else None."""
+    if (told := _TIKZ.fullmatch(text.strip().lower())) is None:
+        return None
+    first, second = css_color(told[1]), css_color(told[3] or "white")
+    if first is None or second is None or float(told[2]) > 100:
+        return None
+    share = float(told[2]) / 100
+    return _of_bytes([share * a + (1 - share) * b for a, b in zip(first, second, strict=True)])
 
 
 SQUARES = ("checker", "checkers", "checkered", "checkerboard", "chequered", "chess", "chessboard", "squares", "tiles")
@@ -134,11 +146,6 @@ def _meant(text: str) -> str:
         return f'write `"#{digits[1].lower()}"`'
     if text.startswith(("rgb", "rgba")) and len(numbers := [float(one) for one in _DIGITS.findall(text)]) >= 3:
         return _of_bytes(numbers[:3])
-    if (mixture := _MIXED.fullmatch(text)) is not None:
-        first, other = (css_color(one) for one in (mixture[1], mixture[3] or "white"))
-        share = min(float(mixture[2]) / 100, 1.0)
-        if first is not None and other is not None:
-            return _of_bytes([share * a + (1 - share) * b for a, b in zip(first, other, strict=True)])
     if (help := _of_hue(text)) is not None:
         return help
     if (tint := _TINT.fullmatch(text.lower())) is not None and tint[2] in NAMED and "".join(tint.groups()) not in NAMED:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from sceneql.compiler.keyframes import ReadTime, read_keys
 from sceneql.compiler.limits import numbers
-from sceneql.compiler.meant.factors import is_zero, remedy
+from sceneql.compiler.meant.factors import each_by_unit, is_zero, remedy
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
 from sceneql.compiler.vector_fields import TURN, keys_meant, pair_meant, timed, vector_meant_by
@@ -168,7 +168,8 @@ def _vector(
             texts = ", ".join("" if one.span is None else one.span.text for one in items)
             vector, rate = vector_meant(texts), dimension / other in (TIME, FREQUENCY)
             help = remedy(item, dimension) or (vector and f"write `{vector}`")
-            help = "times the `time` a velocity is a length: `1 m/s*time`" if rate else help
+            rated = "times the `time` a velocity is a length: `1 m/s*time`"
+            help = rated if rate else help or each_by_unit(items, wanted)
             found.error(
                 "dimension-mismatch",
                 f"the components of {what} differ: {describe(dimension)} and {describe(other)}",

@@ -19,7 +19,7 @@ TIMES = ("t", "time")
 _DERIVATIVES = tuple(map(re.compile, (r"d(\w+)/dt", r"d(\w+)", r"(\w+?)_?dot")))
 
 
-_SECOND = re.compile(r"(\w+?)_?(?:ddot|dotdot|dd|tt)")
+_SECOND = re.compile(r"(?:d\^?2)?(\w+?)(?:_?(?:ddot|dotdot|dd|tt)|/dt\^?2)")
 
 
 def _first_of(name: str, state: str) -> bool:

@@ -291,8 +291,7 @@ class IslandAssembly(Offered):
         for stage in STAGES:
             groups += grouped(self._terms[stage], blocks)
         first_exact = len(blocks)
-        exact = grouped(self._exact, blocks)
-        events = blocks[first_exact:]
+        exact, events = grouped(self._exact, blocks), blocks[first_exact:]  # of what was just grouped
         pairs = [block.pairs for block in events]
         local = grouped(self._local, blocks)
         between = (self._after, self._settling, self._free, self._tied, self._limits)

@@ -71,8 +71,9 @@ def copy_meant(name: str, known: Collection[str]) -> str | None:
     return f'the number of a copy stands in braces, in quotes: write `"{found[1]}.{{{number}}}"`'
 
 
-_COUNTS = ("count", "n", "times", "number", "to", "stop", "end")
-_COUNTERS = ("as", "for", "each", "index", "var", "variable", "name")
+_COUNTS, _COUNTERS = ("count", "n", "times", "number", "to", "stop", "end"), (
+    "as", "index", "var", "variable", "name", "for", "each", "counter",
+)  # fmt: skip
 """Fields of other programs for how many copies there are, and for the name of their number."""
 
 
@@ -95,8 +96,8 @@ def read_repeat(
         first = "0"
         if isinstance(node, Mapping):
             told = {key: one.text for key, one in node.entries.items() if isinstance(one, Scalar)}
-            ranges = (loop[1] for text in told.values() if (loop := _RANGE.search(text)) is not None)
-            given = next((told[key] for key in _COUNTS if told.get(key, "").isdecimal()), next(ranges, given))
+            given = next((told[key] for key in _COUNTS if told.get(key, "").isdecimal()), given)
+            given = next((loop[1] for text in told.values() if (loop := _RANGE.search(text)) is not None), given)
             first = told.get("from", told.get("start", "0"))
             if "to" in told and first.isdecimal() and told["to"].isdecimal() and first != "0":
                 given = str(int(told["to"]) - int(first) + 1)

@@ -20,8 +20,9 @@ _OWN: Final = (USE, "repeat")
 def reused(root: Mapping, sections: Collection[str], found: Diagnostics) -> Mapping:
     """The script with every `use` written out, in its sections and in those of its templates."""
     outside = dict(_sections(root, sections))
-    result = _body(root, sections, {}, found)
     templates = root.entries.get("templates")
+    patterns = [*templates.entries] if isinstance(templates, Mapping) else []
+    result = _body(root, sections, {}, found, patterns)
     if isinstance(templates, Mapping):
         bodies = {
             name: _body(body, sections, outside, found) if isinstance(body, Mapping) else body
@@ -38,12 +39,18 @@ def _sections(body: Mapping, names: Collection[str]) -> Iterator[tuple[str, Mapp
             yield name, node
 
 
-def _body(body: Mapping, sections: Collection[str], outside: dict[str, Mapping], found: Diagnostics) -> Mapping:
+def _body(
+    body: Mapping,
+    sections: Collection[str],
+    outside: dict[str, Mapping],
+    found: Diagnostics,
+    templates: Collection[str] = (),
+) -> Mapping:
     own = dict(_sections(body, sections))
     changed = dict(body.entries)
     for name, section in own.items():
         if any(_uses(node) for node in section.entries.values()):
-            changed[name] = _Section(name, section, own, outside, found).written_out()
+            changed[name] = _Section(name, section, own, outside, found, templates).written_out()
     return body.holding(changed)
 
 
@@ -53,9 +60,16 @@ def _uses(node: Node) -> bool:
 
 class _Section:
     def __init__(
-        self, name: str, section: Mapping, own: dict[str, Mapping], outside: dict[str, Mapping], found: Diagnostics
+        self,
+        name: str,
+        section: Mapping,
+        own: dict[str, Mapping],
+        outside: dict[str, Mapping],
+        found: Diagnostics,
+        templates: Collection[str],
     ) -> None:
         self.name, self.section, self.own, self.outside, self.found = name, section, own, outside, found
+        self.templates = templates
         self.done: dict[str, Node] = {}
 
     def written_out(self) -> Mapping:
@@ -111,6 +125,9 @@ class _Section:
             if not self.section.partial:
                 elsewhere = [key for key, section in self.own.items() if used.text in section.entries]
                 near = f"'{used.text}' stands under {elsewhere[0]}" if elsewhere else suggestion(used.text, known)
+                if used.text in self.templates:
+                    values = ", ".join(f"{k}: {v.span.text}" for k, v in node.entries.items() if k not in _OWN)
+                    near = f"it is a template: write `{{{used.text}: {{{values}}}}}`"
                 message = f"no part of {self.name} is called '{used.text}'"
                 self.found.error("unknown-name", message, used.span, help=near)
             return None

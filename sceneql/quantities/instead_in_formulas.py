@@ -116,7 +116,6 @@ OF_FORMULAS = (
     ),
     ("unit", "G Gs gauss Gauss", "a gauss is 1e-4 T: 500 G are `0.05 T`"),
     ("unit", "lines contours levels copies segments stars samples", "a number of them has no unit: write it alone"),
-    ("unit", "Celsius celsius centigrade Fahrenheit fahrenheit", "a temperature is in `°C`, `°F` or `K`"),
     ("unit", "degrees degree", "an angle is in `deg`, a temperature in `°C`"),
     ("unit", "particles particle balls items pieces times", "what is counted has no unit: write `100 /s`"),
     (
@@ -211,32 +210,22 @@ OF_FORMULAS = (
 
 OF_NAMED = (
     (
-        "field.flow",
-        "nu kinematic_viscosity kinematicviscosity",
-        "a flow has the other viscosity, the density times this one: for water write `viscosity: 1e-3 Pa*s`",
+        "field.solvers",
+        "tolerance rtol atol tol",
+        "its steps have one length, `step: 1 ms`; by a tolerance goes `{dopri5: {tolerance: 1e-6}}`",
     ),
     (
-        "field.mass_spring",
+        "field.cloth",
+        "self_collision selfcollision self_collisions self_collide self_contact",
+        "what touches itself is a contact: write `contacts: [mutual_collision]`",
+    ),
+    (
+        "field.mass_spring field.cloth",
         "young youngs_modulus young_modulus modulus elastic_modulus E",
-        "a spring has its `stiffness` in N/m, the modulus times the area of the rope's section over the length of a"
-        " spring: `stiffness: 2e9 N/m^2*1 mm^2/(10 cm)`",
+        "it has springs, each with a `stiffness`: of a rod it is modulus times area over length, `100 N/m`",
     ),
-    (
-        "field.rk4 field.euler field.heun field.midpoint field.verlet field.semi_implicit_euler field.boris"
-        " field.blanes_moan",
-        "tolerance tol rtol atol error accuracy",
-        "its steps have one length: write `step: 1 ms`; `dopri5: {tolerance: 1e-6}` chooses them by their errors",
-    ),
-    (
-        "field.arrow",
-        "length size",
-        "`scale` says how long it is, in meters for each unit of its vector: write `scale: 0.1`",
-    ),
-    (
-        "field.cloth field.mass_spring field.elastic",
-        "self_collision selfcollision self_collisions self_contact",
-        "its own masses meet by a contact: leave it out here, and write `contacts: [mutual_collision]`",
-    ),
+    ("field.arrow", "along", "what it shows is its `vector: ball.velocity`"),
+    ("field.arrow", "length size factor", "it is its vector times `scale`, in meters: of a velocity `scale: 0.1`"),
     (
         "field.emit",
         "size diameter width scale",

@@ -20,9 +20,12 @@ _FORMULA = re.compile(r"[-+]?[\w.(]")
 _JOINS = tuple("+*/^<>=,")
 _INDEX = re.compile(r"\[\s*(\d+)\s*\](?!\.)")
 _COPY = re.compile(r"\[\s*([^\[\]{}\"']+?)\s*\](\.[\w.]+)?")
+_LINKED = re.compile(r"[^\W\d]\w*(?:\.\w+)+")
 AXES = "xyz"
 VECTORS = ("position", "velocity", "acceleration", "spin", "force", "torque", "momentum", "center")
 """Outputs that are vectors of three."""
+OVER_TIME = ("energy", "kinetic", "potential", "mass", "volume", "angle", "speed")
+"""Outputs that are one number at each instant."""
 _CALLED = re.compile(
     r"(?:new\s+)?(?:\w+\.)*\w*?(?:vec|vector|point|array|float3|tuple)\w*\(\s*[\[(]?([^()\[\],]+(?:,[^()\[\],]+){1,2})[\])]?\s*\)",
     re.IGNORECASE,
@@ -310,7 +313,7 @@ def indexed(expr: Expr, before: str, text: str, at: int) -> str | None:
             return None
         take = "item" if isinstance(expr.items[0], Vector) else "component"
         return f"write `{take}({expr.span.text}, {found[1]})`"
-    if not isinstance(expr, Name):
+    if not isinstance(expr, Name) and not _LINKED.fullmatch(before):
         return None
     if (index := _INDEX.match(text, at)) is not None:
         whole = f"item({before}, {index[1]})"
@@ -318,6 +321,8 @@ def indexed(expr: Expr, before: str, text: str, at: int) -> str | None:
             return f"write `{before}.{AXES[int(index[1])]}`"
         if int(index[1]) >= len(AXES) or before.endswith("s"):  # positions, radii of a list
             return f"write `{whole}`"
+        if index[1] == "0" and before.rpartition(".")[2] in OVER_TIME:
+            return f"at the start of the run it is `initial({before})`, at its end `final({before})`"
         return f"write `{before}.{AXES[int(index[1])]}`, or of a list `{whole}`"
     if (copy := _COPY.match(text, at)) is None:
         return None

@@ -28,6 +28,10 @@ class Placed(Object):
         """(3, 4) map from its own coordinates to its parent's."""
         return affine(moment.at(self.position), moment.at(self.rotation))
 
+    def smooth(self, moment: Moment) -> bool:
+        """Whether its surface is known to have one tangent plane at each place: no creases, no corners."""
+        return False
+
 
 def rotation_matrix(quaternion: Any) -> Floats:
     """Rotation matrix (3, 3) of a quaternion [w, x, y, z] of any length but 0. Raises ValueError for 0."""

@@ -21,11 +21,17 @@ from scipy.sparse.linalg import cg, eigsh, splu
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from sceneql.linear.newton_kernels import ITERATIONS
 from sceneql.pipeline import load
+from sceneql.quantities.diagnostic import ScriptError
 from sceneql.run.run import Run
 from solids import Solid
 
 COOK = [(0, 0), (48, 44), (48, 60), (0, 44)]
-ELASTICA = {4: (0.66996418127767, 0.32894124224685), 10: (0.8106090248803, 0.55499559775375)}
+ELASTICA = {
+    1: (0.30172077379981, 0.056433236283377),
+    2: (0.49345748039671, 0.16064172082517),
+    4: (0.66996418127767, 0.32894124224685),
+    10: (0.8106090248803, 0.55499559775375),
+}
 
 
 def solid(fields: str, more: str = "") -> Solid:
@@ -166,7 +172,11 @@ def ring(along: Any, across: Any) -> float:
 
 
 def rolled() -> None:
-    """A strip bent to a ring by M = 2 pi E I/L at its end: how far apart its ends are, beside its law's exact value."""
+    """A strip bent to a ring by M = 2 pi E I/L at its end: how far apart its ends are, beside its law's exact value.
+
+    The bar, 1e-3 of L, is one for `corotated` alone: the exact solid of L/100 misses it by the other laws, by 1.98e-3
+    (`saint_venant`) and 1.48e-3 (`neo_hookean`). At 40 cells the mesh's own error hides that.
+    """
     laws = {
         "corotated": (lambda t, r: t - 1, lambda t, r: r - 1),
         "saint_venant": (lambda t, r: t * (t * t - 1) / 2, lambda t, r: r * (r * r - 1) / 2),
@@ -188,7 +198,11 @@ def rolled() -> None:
 
 
 def le10() -> None:
-    """NAFEMS LE10 by our mesher: stress beside the inner ellipse, on top."""
+    """NAFEMS LE10 by our mesher: stress beside the inner ellipse, on top.
+
+    The outer face is held in height at its middle line, as the reference says, by nodes that stand there, and at those
+    of its middle third, as tests/test_elastic_bars.py has it: holds take nodes alone.
+    """
     objects = (
         "objects:\n  disk: {cylinder: {radius: 1 m, height: 0.6 m}}\n  core: {cylinder: {radius: 1 m, height: 1 m}}\n"
         "  wide: {group: {children: [disk], scale: [3.25, 1, 2.75], hidden: yes}}\n"
@@ -197,21 +211,30 @@ def le10() -> None:
         "position: 2 0 2 m}}]}}, hole]}}\n"
     )
     outer = "(abs((x/3.25)^2 + (z/2.75)^2 - 1) < 1e-6)"
-    hold = f"outer: {{where: '{outer}', components: xz}}, middle: {{where: '{outer}*(abs(y) < 0.1)', components: y}}, "
-    hold += "one: {where: x < 1e-6, components: x}, two: {where: z < 1e-6, components: z}"
     cases = [(spacing, None) for spacing in (0.4, 0.37, 0.34, 0.31, 0.28, 0.25, 0.22, 0.2)]
     for spacing, fine in [*cases, (0.4, 0.2), (0.4, 0.1), (0.35, 0.1), (0.3, 0.2), (0.3, 0.1), (0.27, 0.12)]:
         finer = f"finer: {{d: {{near: 2 0.3 0 m, within: 0.1 m, spacing: {fine} m}}}}, " if fine else ""
-        start = time.perf_counter()
-        one = solid(
-            f"{{of: plate, spacing: {spacing} m, {finer}element: p2, "
-            "law: {linear: {modulus: 210 GPa, poisson: 0.3}}, "
-            f"hold: {{{hold}}}, loads: {{top: {{where: y > 0.299999, pressure: 1 MPa}}}}, probes: {{d: 2 0.3 0 m}}}}",
-            objects,
-        )
-        places, _ = one.rest(tolerance=1e-6)
-        name = f"LE10, p2, spacing {spacing}{f', {fine} near it' if fine else ''}, {len(one.mesh.cells)} elements"
-        told(name, one.read("d.stress", places)[2, 2] / -5.38e6 - 1, seconds=time.perf_counter() - start)
+        start, errors, count = time.perf_counter(), [], 0
+        for beside in (1e-6, 0.1):
+            hold = f"outer: {{where: '{outer}', components: xz}}, "
+            hold += f"middle: {{where: '{outer}*(abs(y) < {beside})', components: y}}, "
+            hold += "one: {where: x < 1e-6, components: x}, two: {where: z < 1e-6, components: z}"
+            try:
+                one = solid(
+                    f"{{of: plate, spacing: {spacing} m, {finer}element: p2, "
+                    "law: {linear: {modulus: 210 GPa, poisson: 0.3}}, "
+                    f"hold: {{{hold}}}, loads: {{top: {{where: y > 0.299999, pressure: 1 MPa}}}}, "
+                    "probes: {d: 2 0.3 0 m}}",
+                    objects,
+                )
+            except ScriptError:  # no node stands on the line
+                errors.append(np.nan)
+                continue
+            places, _ = one.rest(tolerance=1e-6)
+            errors.append(one.read("d.stress", places)[2, 2] / -5.38e6 - 1)
+            count = len(one.mesh.cells)
+        name = f"LE10, p2, spacing {spacing}{f', {fine} near it' if fine else ''}, {count} elements; line, third"
+        told(name, *errors, seconds=time.perf_counter() - start)
 
 
 def rubber() -> None:

@@ -241,8 +241,10 @@ def _filled(
         raise inside.refusal("no tetrahedron lies in it; make the spacing smaller")
     if not (volumes(points, tetrahedra) > 0.0).all():
         raise inside.refusal("so far from the origin its tetrahedra have no volume in double precision")
-    kept = creases_kept(points, tetrahedra, spacing, inside.holds, inside.crossing)
-    points, tetrahedra = creases_split(kept, tetrahedra, spacing, inside.holds, inside.crossing)
+    surface = inside.holds, inside.crossing, inside.smooth
+    points, tetrahedra = creases_split(
+        creases_kept(points, tetrahedra, spacing, *surface), tetrahedra, spacing, *surface
+    )
     _whole(inside, spacing, points)
 
     def onto(places: Floats, normals: Floats) -> Floats:

@@ -63,6 +63,8 @@ class Inside:
         """Raises ScriptError for an object without an inside or without an end."""
         import numpy as np
 
+        from sceneql.shapes.placement import Placed
+
         kind: Any = assembly.object(ref)
         start: Any = Start(assembly)
         self.span = ref.span
@@ -79,6 +81,8 @@ class Inside:
             if not (np.isfinite(self.low).all() and np.isfinite(self.high).all()):
                 raise TypeError("it has no end")
             self._holds, self._crossing, self.field = _test(kind, start)
+            self.smooth: bool = isinstance(kind, Placed) and kind.smooth(start)
+            """Whether its surface is known to have no creases and no corners."""
         except (TypeError, ValueError) as error:
             raise self.refusal(str(error)) from None
 

@@ -39,9 +39,12 @@ more splits."""
 
 
 def creases_split(
-    kept: Kept, tetrahedra: Ints, spacing: float, holds: Holds, crossing: Crossing
+    kept: Kept, tetrahedra: Ints, spacing: float, holds: Holds, crossing: Crossing, smooth: bool = False
 ) -> tuple[Floats, Ints]:
-    """Points (n, 3) [m] and tetrahedra (t, 4), with new ones where creases were cut off."""
+    """Points (n, 3) [m] and tetrahedra (t, 4), with new ones where creases were cut off.
+
+    ``smooth``: the object is known to have no creases; notches between planes that turn much are filled all the same.
+    """
     points, planes = kept.points, kept.normals
     cells: Any = tetrahedra.astype(np.int64)
     level = 0
@@ -56,6 +59,8 @@ def creases_split(
         if len(more):
             cells = np.concatenate([cells, more])
             continue
+        if smooth:
+            break
         places, good = _places(points[sides], chosen, spacing, holds, crossing)
         touched = np.zeros(len(cells), dtype=bool)
         new: list[Any] = []

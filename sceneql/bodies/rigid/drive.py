@@ -49,7 +49,8 @@ class Driven(Joint):
         """Problems of a tie; limits that do not include the start."""
         yield from super().problems()
         if self.limits is not None and not self.limits[0] <= 0.0 <= self.limits[1]:
-            yield Problem("it starts at 0, which must lie between the limits", ("limits",))
+            help = "the smaller one stands first" if self.limits[0] > self.limits[1] else None
+            yield Problem("it starts at 0, which must lie between the limits", ("limits",), help=help)
 
     def assemble_motion(
         self, first: Side, second: Side, holds: int, assembly: Assembly

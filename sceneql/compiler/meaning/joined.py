@@ -116,7 +116,18 @@ def _skeleton(facts: Facts, task: Task, kind: Any, found: Diagnostics) -> None:
         told = f"'{task.name}' is empty: its density is nowhere above the threshold of {kind.threshold:g}"
         help = "write a larger `weight`, 1 by default, or a smaller `threshold`"
         found.warning("empty-surface", told, task.span, help=help)
-    elif facts.whole and alone and len(parts) > 1:
+        return
+    for place, radius, weight in parts:
+        reached = sum(distance(place, other) < radius + size for other, size, _ in parts)  # by itself, too
+        if reached == 1 and 0.0 < weight <= kind.threshold:
+            told = (
+                f"the part of '{task.name}' at {text(place)} is never seen: its weight, {weight:g}, is not above the "
+            )
+            told += f"threshold of {kind.threshold:g}, and no other part reaches it"
+            help = f"write a larger one, as `weight: {min(1.0, 2.0 * kind.threshold):.2g}`, or bring it nearer"
+            found.warning("empty-surface", told, task.span, help=help)
+            return
+    if facts.whole and alone and len(parts) > 1:
         told = f"the parts of '{task.name}' do not touch: the nearest two are {min(apart):.3g} m out of reach"
         far = min(distance(a, b) for (a, _, _), (b, _, _) in combinations(parts, 2))
         found.warning("not-joined", told, task.span, help=f"write a larger `radius`, as `radius: {far:.2g} m`")

@@ -70,7 +70,8 @@ def improve(reader: Any, written: Naming[str, Node], cls: type[BaseModel], name:
         return
     if (final := mended(reader, written[name], cls, name)) is not None and final[1] > 1:
         help = found[before].help
-        found[before] = replace(found[before], help=f"{help}; in all `{name}: {final[0]}`")
+        help = f"{help}; in" if not (help or "").endswith("?") else f"{help} In"
+        found[before] = replace(found[before], help=f"{help} all `{name}: {final[0]}`")
 
 
 def better_alone(
@@ -111,7 +112,11 @@ def better_alone(
         found[before] = replace(found[before], help=f"what changes with their age stands there: {aged}")
     if code == "unknown-choice" and (other := helped.field_of_part(reader, node, written, cls)) is not None:
         found[before] = replace(found[before], help=other)
-    if code == "unknown-name" and helped.is_part(reader, node):
+    if code == "unknown-name" and isinstance(node, Sequence) and len(node.items) == 1 and places_one(info):
+        one = helped.other_output(reader, node.items[0], info, name)
+        whole = (one or "").replace("write `", f"it is one place, without brackets: write `{name}: ", 1)
+        found[before] = replace(found[before], help=whole or help)
+    elif code == "unknown-name" and helped.is_part(reader, node):
         found[before] = replace(found[before], help=helped.other_output(reader, node, info, name) or help)
     elif code == "unknown-name" and any(mark.direction for mark in quantities(info)) and node.span.text in AXES:
         found[before] = replace(found[before], help=f"write `{name}: {AXES[node.span.text]}`")
@@ -209,6 +214,11 @@ def field_of(cls: type[BaseModel], name: str) -> Any:
     return next(info for key, info in cls.model_fields.items() if kinds.written_name(key) == name)
 
 
+def places_one(info: Any) -> bool:
+    """Whether a field is a vector of three, not a list."""
+    return bool(marks := quantities(info)) and all(mark.shape == (THREE,) for mark in marks)
+
+
 def mended(reader: Any, node: Node, cls: type[BaseModel], name: str) -> tuple[str, int] | None:
     """The text that a field takes in place of a wrong value, and in how many steps one comes there; None for none.
 
@@ -258,14 +268,18 @@ def _candidates(text: str, errors: list[Diagnostic], name: str) -> Iterator[str]
         either = one.code == "unit-needed" or ", in degrees" in (one.help or "")
         if meant is None or one.span is None or (shown and shown != [meant[1]] and not either):
             return
-        told.append((*_shown_from(text, one.span.start, one.span.end, meant[1]), meant[1]))
+        whole = meant[1]
+        if one.code == "unknown-output" and "." not in whole and "." in one.span.text:
+            whole = f"{one.span.text.rpartition('.')[0]}.{whole}"  # of the same model
+        told.append((*_shown_from(text, one.span.start, one.span.end, whole), whole))
     of_field = [meant.removeprefix(f"{name}: ") for _, _, meant in told if meant.startswith(f"{name}: ")]
     if not of_field:
         yield _replaced(text, told)
         with suppress(ScriptError):
             node = compose_node(Source("value", text))
             yield _replaced(text, [(*_around(node, start, end), meant) for start, end, meant in told])
-    yield (of_field or [meant for _, _, meant in told])[0]
+    if of_field or not text.startswith("[") or told[0][2].startswith("["):  # else the other items would be lost
+        yield (of_field or [meant for _, _, meant in told])[0]
 
 
 def _shown_from(text: str, start: int, end: int, meant: str) -> tuple[int, int]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.dimension import DENSITY, ENERGY, LENGTH, MASS, PLAIN, TEMPERATURE, TIME, Dimension, suits
-from sceneql.quantities.expression import Expr, Link, Number, Symbol, Vector, walk
+from sceneql.quantities.expression import Call, Expr, Link, Number, Symbol, Vector, walk
 from sceneql.quantities.instead import of_unit, unit_meant
 from sceneql.quantities.parser import parse_value
 from sceneql.quantities.spaced import apart
@@ -84,9 +85,23 @@ def _factor(expr: Expr, wanted: Dimension | None) -> str | None:
     unit = unit_of(wanted / has)
     one = next((item for item in expr.items if not is_zero(item)), expr) if isinstance(expr, Vector) else expr
     text = text if one.span is None else one.span.text
+    if isinstance(one, Call) and one.op in ("component", "item") and isinstance(one.args[0], Link):
+        return None  # its number says which one
     if unit != "1" and any(isinstance(node, Number) and node.bare and node.value != 0 for node in walk(expr)):
         return f"a number in it has no unit: write `{text}*(1 {unit})`, or `{unit}` behind that number"
     return None
+
+
+def each_by_unit(items: Collection[Expr], wanted: Dimension | None) -> str | None:
+    """The help for a list of several quantities where any is taken, as the curves of a graph: each by its unit."""
+    texts = [
+        f"{one.span.text}/(1 {unit_of(one.type.dimension)})"
+        for one in items
+        if isinstance(one, Link | Call) and one.span is not None and one.type.dimension is not None
+    ]
+    if wanted is not None or len(texts) < len(items):
+        return None
+    return f"divide each by its unit: write `[{', '.join(texts)}]`; or show each in a graph of its own"
 
 
 def is_zero(expr: Expr) -> bool:

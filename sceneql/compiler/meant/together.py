@@ -15,6 +15,7 @@ from sceneql.quantities.literal import vector_meant
 
 _FIRST = re.compile(r"\{(\w+): [<\[]")
 _BLANK = re.compile(r"<(\w+)(#?)\|([^>]*)>")
+_BELOW = re.compile(r"([^<>=]+)(<=?|>=?|==)([^<>=]+)")
 CELLS = ("cells", "resolution", "grid", "n", "divisions", "nodes", "points")
 """Fields of other programs for a number of cells."""
 _RATE = re.compile(r"d\(?(\w+)\)?\s*/\s*dt")
@@ -61,7 +62,7 @@ def together(name: str, unknown: Sequenced[str], node: Mapping, known: Collectio
     told = told or _along(name, unknown, node, known) or _shown(name, unknown, node, known)
     told = told or _typed(name, unknown, node, known) or worked_out(name, unknown, node, known)
     told = told or _of_keys(name, node) or _drag(name, unknown, node, known) or _two_places(name, node, known)
-    told = told or _panels(name, unknown, node, known)
+    told = told or _panels(name, unknown, node, known) or _compared(name, node, known)
     if told is not None:
         return told
     ours = same_as(name, known)
@@ -88,6 +89,19 @@ def together(name: str, unknown: Sequenced[str], node: Mapping, known: Collectio
     if len(items) > 1 and field is not None and isinstance(node.entries[names[first]], Scalar):
         return f"a list stands in brackets: write `{field}: [{', '.join(items)}]`"
     return None
+
+
+def _compared(name: str, node: Mapping, known: Collection[str]) -> str | None:
+    """The help for a comparison under a name of other programs, where its sides stand apart: ``assert: a < b``."""
+    sides = _BELOW.fullmatch(node.entries[name].span.text.strip("\"'"))
+    value, others = node.entries[name], node.entries.keys() & {*known}
+    if isinstance(value, Scalar) and value.quoted:
+        return None  # told as one value, one level further in
+    if sides is None or not {"of", "below"} <= {*known} or not others or others & {"of", "below", "value"}:
+        return None
+    of, sign, limit = sides[1].strip(), sides[2], sides[3].strip()
+    of, limit = (limit, of) if ">" in sign else (of, limit)
+    return f'the two sides stand apart: write `of: "{of}", {"value" if sign == "==" else "below"}: {limit}`'
 
 
 def _empty(node: Node) -> bool:

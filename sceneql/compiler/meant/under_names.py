@@ -101,7 +101,8 @@ def nameless(node: MappingNode, item: Any, what: str) -> str | None:
         return None
     known = [kinds.written_name(name) for name in item.model_fields]
     inner = [one for one in node.entries.values() if isinstance(one, MappingNode)]
-    if len(node.entries) < SEVERAL or not {*node.entries} <= {*known}:
+    alone = len(node.entries) < SEVERAL and not all(isinstance(one, Scalar) for one in node.entries.values())
+    if alone or not node.entries or not {*node.entries} <= {*known}:
         return None
     if any(key in known for one in inner for key in one.entries):
         return None
@@ -118,6 +119,8 @@ def text_meant(node: Node, what: str) -> str | None:
         return (
             f"a spring joins two masses: write `hook: {{position: {place}, fixed: yes}}` in `masses`, and here `hook`"
         )
+    if isinstance(node, MappingNode) and what == "pins" and "\n" not in node.span.text:
+        return f"a place stands under a name: write `pins: {{edge: {node.span.text}}}`"
     return (
         f'write `{what}: "{node.span.text}"`' if isinstance(node, MappingNode) and "\n" not in node.span.text else None
     )

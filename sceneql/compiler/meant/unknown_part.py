@@ -18,6 +18,12 @@ from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import Diagnostics, same_as, suggestion
 from sceneql.quantities.instead import instead
 
+OF_LAW = {
+    "modulus": ("e", "young", "youngs_modulus", "young_modulus", "modulus", "elastic_modulus"),
+    "poisson": ("nu", "poisson", "poisson_ratio", "poissons_ratio"),
+}
+"""Fields of a solid's law, by their names in other programs."""
+
 
 def other_family(name: str, mark: Refers, names: Names, catalogue: Catalogue, family_of: Callable[[str], str]) -> str:
     """The help for a part of a wrong family: the model that moves it, a word by that name, or parts of the right."""
@@ -82,6 +88,16 @@ def warn_of_another(
         text = f"'{node.text}' is a word here, and makes another one, with its defaults"
         help = f"to name the one that is there write `{same[0]}`, to make another `{{{node.text}: {{}}}}`"
         found.warning("second-part", text, node.span, help=help)
+
+
+def of_law(node: Mapping, family: str) -> str | None:
+    """The help for the law of a solid where its look stands: ``material: {E: 2 MPa, nu: 0.3}``."""
+    given = {name: one.span.text for name, one in node.entries.items()}
+    told = {field: text for name, text in given.items() for field, names in OF_LAW.items() if name.lower() in names}
+    if family != "materials" or "modulus" not in told:
+        return None
+    law = ", ".join(f"{field}: {text}" for field, text in told.items())
+    return f"`material` is how it looks; a solid's law says it: write `law: {{neo_hookean: {{{law}}}}}`"
 
 
 def beside_world(place: str) -> str:

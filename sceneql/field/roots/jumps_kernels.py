@@ -22,6 +22,8 @@ SIDES = 3
 """Most sides of a step: sign is -1, 0 or 1."""
 PASSED = 64
 """Jumps passed on one ray before the rest is left undecided."""
+AGAIN = 2
+"""Times that certify goes on from where its evaluations were spent."""
 PIECES = 200
 """Pieces examined on the way to one jump."""
 
@@ -164,6 +166,7 @@ def beyond(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fine
     least = max(finest, 4.0e-15 * (abs(t0) + abs(t1)))
     status = ops.UNDECIDED
     t = t0
+    again = AGAIN
     for _ in range(PASSED):
         side = sign
         if touching:
@@ -171,7 +174,12 @@ def beyond(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fine
             side = 1.0 if low > 0.0 else -1.0
         behind = passed(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, least, side, touching)
         if not behind > t:
-            break
+            # Before a jump across which a sum changes far less than its terms, certify comes near in small steps, and
+            # goes on from where f is proved away from zero: no root at this end is skipped.
+            low, _, _, _, _ = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, side)
+            if touching or again == 0 or not low > 0.0:
+                break
+            again -= 1
         status, t = certify(
             code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, behind, t1, finest, sign, anywhere, touching
         )

@@ -45,6 +45,11 @@ class Group(Placed):
         found = apart([child for _, child in self._objects(moment)], moment, measure)
         return None if found is None else found.mapped(self.local(moment))
 
+    def smooth(self, moment: Moment) -> bool:
+        """Whether its only child is, scaled or not."""
+        children = [child for _, child in self._objects(moment)]
+        return len(children) == 1 and isinstance(children[0], Placed) and children[0].smooth(moment)
+
     def curved(self, moment: Moment) -> Any:
         """That of its only child, scaled. Raises TypeError for several, ValueError where it is none any more."""
         if len(self.members()) != 1:

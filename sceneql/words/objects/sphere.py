@@ -35,6 +35,10 @@ class Sphere(Solid):
         """Signed distance."""
         return less(build, length(build, x, y, z), positive(moment, self.radius, "radius"))
 
+    def smooth(self, moment: Moment) -> bool:
+        """It is."""
+        return True
+
     def reach(self, moment: Moment) -> tuple[Any, Any]:
         """The cube around it."""
         r = positive(moment, self.radius, "radius")

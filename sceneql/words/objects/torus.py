@@ -29,6 +29,10 @@ class Torus(Solid):
         around = less(build, length(build, x, z), positive(moment, self.radius, "radius"))
         return less(build, length(build, around, y), positive(moment, self.tube, "tube"))
 
+    def smooth(self, moment: Moment) -> bool:
+        """Where it has a hole: else its surface has two dents on the axis."""
+        return bool(positive(moment, self.tube, "tube") < positive(moment, self.radius, "radius"))
+
     def reach(self, moment: Moment) -> tuple[Any, Any]:
         """The flat block around it."""
         tube = positive(moment, self.tube, "tube")
