@@ -225,7 +225,7 @@ OF_NAMED = (
         "it has springs, each with a `stiffness`: of a rod it is modulus times area over length, `100 N/m`",
     ),
     ("field.arrow", "along", "what it shows is its `vector: ball.velocity`"),
-    ("field.arrow", "length size factor", "it is its vector times `scale`, in meters: of a velocity `scale: 0.1 s`"),
+    ("field.arrow", "length size factor", "it is its vector times `scale`, in meters: of a velocity `scale: 0.1`"),
     (
         "field.emit",
         "size diameter width scale",

@@ -129,8 +129,19 @@ def number_meant(node: Node, info: Any, name: str, code: str, help: str | None) 
         return f"of 30 frames a second write `{name}: {float(framed[1]) * FRAMES:g} /s`"
     word = re.fullmatch(NAME, node.span.text) is not None and (help or "").startswith("names stand under")
     if not word or not marks or not isinstance(default, str) or not default[:1].isdigit():
-        return None
+        return _defined(node.span.text, marks) if word else None
     return f"write a number, as `{name}: {default}`, or a name that stands under `define`"
+
+
+def _defined(name: str, marks: Collection[kinds.Quantity]) -> str | None:
+    """The help for a name of nothing in place of a quantity, with one of the field's dimension and components."""
+    mark = next((one for one in marks if one.dimension is not None and one.shape in ((), (3,))), None)
+    if mark is None or mark.dimension is None:
+        return None
+    axes = "" if mark.shape == () else "0 1 0 " if mark.dimension.plain else "0 2 0 "
+    one = "1" if mark.dimension.plain else format_quantity(1.0, mark.dimension)
+    value = f"{axes}{one.partition(' ')[2]}".strip() if axes else one
+    return f"names stand under `define`: write `define: {{{name}: {value}}}`, or the value itself, `{value}`"
 
 
 def _of_two_units(node: Node, marks: Collection[kinds.Quantity]) -> str | None:
