@@ -23,6 +23,7 @@ from sceneql.compiler.meant.unknown_part import (
     other_family,
     part_meant,
     several_meant,
+    shows_nothing,
     warn_of_another,
     word_for_name,
 )
@@ -318,6 +319,9 @@ class _Checker:
             if name in self.entries and self.catalogue.load(self.family_of[name], self.entries[name].word) is None:
                 return None  # its word is reported there
             if name in self.entries and self.family(name) in (mark.family, mark.also):
+                if (wrong := shows_nothing(name, mark, self.names, self.catalogue)) is not None:
+                    self.found.error("wrong-family", f"'{name}' shows no field in colors", node.span, help=wrong)
+                    return None
                 return Ref(name, node.span)
             if self.catalogue.load(mark.family, node.text) is not None:  # an object called `mirror` hides no material
                 warn_of_another(node, mark.family, entry.name, self.entries, self.family_of, self.found)

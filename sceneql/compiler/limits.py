@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any, get_args
 
 from sceneql.kinds import LIMITS, Quantity, Value
-from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.diagnostic import Diagnostics, Note
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.instead import instead
 from sceneql.quantities.span import Span
@@ -29,12 +29,19 @@ WORDS = 2
 
 
 def check_limits(
-    value: Any, limits: Mapping[str, float], what: str, annotation: Any, span: Span, found: Diagnostics
+    value: Any, limits: Mapping[str, float], what: str, annotation: Any, span: Span, found: Diagnostics, whose: str = ""
 ) -> None:
-    """Report a constant that lies outside its field's range, or is not finite."""
+    """Report a constant that lies outside its field's range, or is not finite.
+
+    ``whose``: the part that it is of, where the script's text does not tell.
+    """
+    notes = []
     if isinstance(value, Value):
         if not value.constant:
             return
+        place = value.expr.span
+        if place is not None and whose and not (span.start <= place.start <= place.end <= span.end):
+            notes.append(Note("the value stands here", place))
         value = evaluate(value.expr, {})
         if not finite(value):
             found.error("not-finite", f"{what} is not a finite number", span)
@@ -52,7 +59,9 @@ def check_limits(
                     help = f"write `{number:g} %` for a percentage"
                 if help is None:
                     help = _mended(span.text, number, bound)
-                found.error("out-of-range", f"{what} must be {word} {asked}, not {given}", span, help=help)
+                of = f": that is '{whose}'" if whose else ""
+                text = f"{what} must be {word} {asked}, not {given}{of}"
+                found.error("out-of-range", text, span, help=help, notes=notes)
                 return
 
 

@@ -9,7 +9,7 @@ from itertools import count, takewhile
 from typing import Protocol
 
 from sceneql.compiler.css_colors import NAMED, css_color
-from sceneql.compiler.meant.output_help import output_alone, output_meant
+from sceneql.compiler.meant.output_help import NATURE, output_alone, output_meant, usual
 from sceneql.kinds import Gives
 from sceneql.language.scope import Broken, Entry, Given, Scope
 from sceneql.language.tree import Mapping as MappingNode
@@ -316,7 +316,8 @@ class Names:
             hint = self._copy_number(wanted) or self._of_copies(wanted)
             hint = hint or at_rate(instead("name", wanted), span.source.text)
             hint = hint or (output_alone(wanted, self._giving) if len(parts) == 1 < len(wanted) else None)
-            hint = hint or suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time", *CONSTANTS])
+            giving = [part for part in parts_known if self.outputs_of(part) != {}]
+            hint = hint or suggestion(wanted, [*self._inside(), *self.defines, *giving, "time", *CONSTANTS])
             model = None if hint else self.model_of(parts[0])
             if model is not None:
                 hint = f"it is one of the bodies or masses of '{model}': write `{model}.{wanted}`"
@@ -325,15 +326,14 @@ class Names:
             if hint is None and wanted in NAMED:
                 numbers = ", ".join(f"{one:.3g}" for one in css_color(wanted) or ())
                 hint = f"a color by its name stands alone, `color: {wanted}`; in a formula it is `[{numbers}]`"
-            if hint is None and wanted in UNITS:
+            if hint is None and wanted in UNITS and wanted not in NATURE:
                 hint = f"a unit stands behind a number: write `(1 {wanted})`"
-            giving = next(iter(self._giving(wanted)), None)
-            if hint is None and giving is not None:
-                hint = f"a value is named with its part: write `{giving}.{wanted}`"
+            if hint is None and (first := next(iter(self._giving(wanted)), None)) is not None:
+                hint = f"a value is named with its part: write `{first}.{wanted}`"
             if hint is None and len(parts) == 1:
                 hint = declared(span.source.text, wanted)
             if hint is None and len(parts) == 1:
-                hint = f"names stand under `define`, `define: {{{wanted}: 1 m}}`: `sceneql words define`"
+                hint = f"names stand under `define`, `define: {{{wanted}: {usual(wanted)}}}`: `sceneql words define`"
         return Diagnostic("unknown-name", message, span, hint)
 
     def _meant(self, parts: tuple[str, ...], known: list[str]) -> str:

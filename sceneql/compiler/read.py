@@ -30,6 +30,7 @@ from sceneql.compiler.paths import read_path
 from sceneql.compiler.problems import Unreadable, report_known, validated
 from sceneql.compiler.texts import read_text, unescaped
 from sceneql.kinds.values import Verbatim
+from sceneql.language.dashed import without_dashes
 from sceneql.language.repeat import numbered
 from sceneql.language.scope import Scope
 from sceneql.language.tree import Mapping as MappingNode
@@ -75,8 +76,9 @@ class Reader:
         elif node is not None and broken(node):
             raise Unreadable
         elif node is not None and not (isinstance(node, Scalar) and node.kind == "null"):
-            fields = ", ".join(map(kinds.written_name, cls.model_fields))
-            help = likely.field_meant(self, node, cls) or f"it has {fields}"
+            fields = list(map(kinds.written_name, cls.model_fields))
+            help = without_dashes(node, fields) or likely.field_meant(self, node, cls)
+            help = help or f"it has {', '.join(fields)}"
             raise self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span, help)
         symbols, solved = self.symbols, self.solved
         if isinstance(node, MappingNode) and issubclass(cls, kinds.Kind):
@@ -142,7 +144,7 @@ class Reader:
         value = self.read(node, annotation, name)
         errors = len(self.found.errors)
         bounds = (info.json_schema_extra or {}).get("limits", {})
-        limits.check_limits(value, bounds, name, annotation, node.span, self.found)
+        limits.check_limits(value, bounds, name, annotation, node.span, self.found, self._copy())
         if len(self.found.errors) > errors:
             raise Unreadable
         return value
@@ -206,6 +208,10 @@ class Reader:
         if base is Any:
             return node
         raise TypeError(f"no reading for {annotation!r}")
+
+    def _copy(self) -> str:
+        """The name of the part, where the script writes it once for several; else empty."""
+        return "" if self.names.scope is None else self.owner.rpartition(".")[0]
 
     # --- one method a shape ---
 

@@ -13,6 +13,7 @@ from sceneql.kinds.texts import FORM, overlong
 from sceneql.language.behind_quotes import without_letters
 from sceneql.language.tree import Node, Scalar, unsure
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.expression import Shape
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import Unit, describe, parse_unit, unit_of
 
@@ -168,9 +169,7 @@ def _told(
     if expr is None:
         return None
     if expr.type.shape:
-        help = (
-            f"write `{{length({part.text})}}` for its size, or `{{{part.text}.x}}`" if expr.type.shape == (3,) else None
-        )
+        help = _of_several(part.text, rest, expr.type.shape)
         found.error("wrong-shape", "a text tells single values; take a component, such as `.x`", part.span, help=help)
         return None
     if not mark.over_time and not momentary(expr, part.span, found):
@@ -189,6 +188,16 @@ def _told(
         found.error("dimension-mismatch", message, place)
         return None
     return TextValue(Value(expr, part.span), form[0], unit)
+
+
+def _of_several(name: str, rest: str, shape: Shape) -> str | None:
+    """The help for a vector, or the values of a field or of many, in place of one value of a text."""
+    form = f":{rest}" if rest else ""
+    if shape == (3,):
+        return f"write `{{length({name}){form}}}` for its size, or `{{{name}.x{form}}}`"
+    if shape == (None,):
+        return f"write `{{mean({name}){form}}}`, or `{{max({name}){form}}}`: it is a number at each place"
+    return f"write `{{item({name}, 0).x{form}}}`, of the first" if shape == (None, 3) else None
 
 
 def _unit(text: str, dimension: object, place: Span) -> Unit | None:

@@ -321,7 +321,8 @@ class _Composer:
     def alias(self, name: str, span: Span) -> Node:
         """The node of an anchor, shared; limits count it as if it stood there in full."""
         node = self.anchors.get(name)
-        if node is None and marked(name, self.source, self.faults.values()):
+        merged = self.text[: span.start].rstrip().endswith("<<:")  # which is reported
+        if node is None and (merged or marked(name, self.source, self.faults.values())):
             return hole(span)
         if node is None:
             message = f"*{name} is an alias, and no value above is marked &{name}"

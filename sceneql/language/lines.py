@@ -29,6 +29,8 @@ COMMENT: Final = re.compile(r"//|--+(?=\s)|/\*|%+(?=\s|$)|;+(?=\s|$)|(?i:rem)(?=
 """Beginnings of comments of other languages."""
 _ASSIGNED = re.compile(r"(?:let |var |const |float |int |double |auto )?\s*([^\W\d]\w*)\s*=\s*([^={;]+);?\s*")
 _COLON = re.compile(r":(?=\s|\Z)")
+_ROUND = re.compile(r"\(([^()]*(?:\([^()]*\)[^()]*)*)\)")
+"""What stands in parentheses as a whole."""
 
 
 def left_out(source: Source, text: str, error: yaml.YAMLError) -> Fault | None:
@@ -165,7 +167,10 @@ def _second(source: Source, number: int, after: int, colon: int) -> Fault:
     line = source.line(number)
     start = after + len(line[after:]) - len(line[after:].lstrip())
     message = "a second colon on this line, where no key can stand"
-    help = f"fields on one line have brackets, `{{{line[start:].rstrip()}}}`; a text that holds a colon goes in quotes"
+    written = line[start:].rstrip()
+    round = _ROUND.fullmatch(written)
+    help = f"fields on one line have brackets, `{{{written}}}`; a text that holds a colon goes in quotes"
+    help = help if round is None else f"fields stand in braces, not in parentheses: write `{{{round[1]}}}`"
     at = colon - source.line_starts[number - 1]
     return _line(source, number, start, at, at + 1, message, help)
 

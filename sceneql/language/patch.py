@@ -179,7 +179,10 @@ class _Path:
                 help = f"write {' or '.join(f'{key}.{self.path}' for key in owners)}"
                 names = [*root.entries, *self.families, *(n for key in sections for n in _keys(root.entries.get(key)))]
                 message = f"'{first}' is in several sections" if owners else f"the script has no '{first}'"
-                there = None if owners else suggestion(first, names, STRONG) or _written_as(root, self.steps[-1])
+                single = None if owners else _of_section(root, first, self.value, self.families)
+                there = (
+                    None if owners else single or suggestion(first, names, STRONG) or _written_as(root, self.steps[-1])
+                )
                 if not owners and (given := re.fullmatch(r"\s*([\w.]+)\s*=\s*(.+?)\s*", self.path)) is not None:
                     there = f"a colon stands between a name and its value: write `{given[1]}: {given[2]}`"
                 raise self.fail(0, message, help if owners else there or suggestion(first, names))
@@ -263,6 +266,15 @@ class _Path:
         if replaced or key not in keys:
             keys[key] = Scalar(key, "text", False, self.span.source, self.span.start, self.span.end)
         return node.holding(entries, keys)
+
+
+def _of_section(root: Mapping, key: str, value: Node, families: Collection[str]) -> str | None:
+    """The help for a section of one part by its name in the singular with the part's word: ``solver: euler``."""
+    section = next((one for one in families if key.lower() in (one, one.removesuffix("s"))), None)
+    if section is None or not isinstance(value, Scalar) or not value.text.isidentifier():
+        return None
+    given = [*_keys(root.entries.get(section))]
+    return f"write `{section}.{given[0] if given else 'main'}: {value.text}`"
 
 
 def _written_as(node: Node, name: str, before: str = "") -> str | None:

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from typing import Final
 
+from sceneql.language.dashed import words_apart
 from sceneql.language.in_group import in_group
 from sceneql.language.scope import Broken
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken
@@ -76,6 +77,8 @@ def read_entry(what: str, node: Node, found: Diagnostics, sections: Collection[s
     words = [key for key in node.entries if key != "repeat"]
     if not words and node.partial:
         return None
+    if node.partial and node.flow and node.span.text.lstrip("{ ").startswith("<<"):
+        return None  # the part that it is like is what stands there, which is reported
     if not words:
         help = f"if {what} is the word, a name stands before it: write `main: {name}`; {_ENTRY}"
         found.error("entry-shape", f"{what} has no word", node.span, help=help if name.isidentifier() else _ENTRY)
@@ -209,7 +212,7 @@ def section(name: str, node: Node, taken: Collection[str], found: Diagnostics) -
                 own = _free(written.word.text, result.entries.keys() | set(taken))
                 result.entries[own], result.keys[own] = item, written.word
     elif not (empty(node) or broken(node)):
-        help = f"write `{name}: [{node.text.strip('[] ')}]`" if node.kind == "text" else _ENTRY
+        help = f"write `{name}: [{words_apart(node.text)}]`" if node.kind == "text" else _ENTRY
         if (equated := _EQUATED.fullmatch(node.text.strip())) is not None:
             help = f"a name has a colon behind it: write `{equated[1]}: {equated[2]}`"
         if name == "outputs" and "." in node.text:

@@ -48,6 +48,8 @@ _QUOTED = re.compile(r"(['\"])[-+.\d][^'\",{}\[\]\n]*\1\s*$")
 _KEY: Final = "write `name: value`"
 _LONGEST: Final = 1024
 """Largest length of a key (YAML 1.2, 7.4: implicit keys)."""
+_HOLDING = re.compile(r"\s*(?:- )?[\w.]+:\s+(?P<quote>[\"'])(?P<text>.*)(?P=quote)\s*")
+"""A line whose value is a text in quotes."""
 
 
 def unprintable(text: str) -> int | None:
@@ -89,6 +91,9 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
     if (told := told_behind(source.text, at)) is not None:
         help = f"a text has its values in braces: write `{told}`"
         return _syntax("nothing can stand behind this quote", source, at, help)
+    if (other := _in_quotes(source, at)) is not None:
+        help = f"a text with quotes in it stands in the other ones: write `{other}`"
+        return _syntax("this quote ends the text", source, at - 1, help)
     if "escape" in problem:
         start, end = source.text.rfind('"', 0, at), source.text.find('"', at)
         inside = source.text[start + 1 : end]
@@ -113,6 +118,19 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
         if words in problem:
             return _syntax(message, source, at, help)
     return _syntax("this is not YAML", source, at, f"the parser says: {problem or error}")
+
+
+def _in_quotes(source: Source, at: int) -> str | None:
+    """The text of a line whose quotes end too early, for it holds some itself, ``"It's a "ball""``, as it is meant."""
+    line = source.line(source.position(at)[0])
+    found = _HOLDING.fullmatch(line)
+    if found is None or source.text[at - 1 : at] != found["quote"] or found["quote"] not in found["text"]:
+        return None
+    other = "'" if found["quote"] == '"' else '"'
+    if found["text"].count(found["quote"]) % 2 or ":" in found["text"]:  # two texts side by side
+        return None
+    inner = found["text"].replace("'", "''") if other == "'" else found["text"].replace('"', '\\"')
+    return f"{other}{inner}{other}"
 
 
 def _long_key(text: str, at: int, flow: int | None) -> int | None:

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from typing import Final
 
 from sceneql.language.copies import Copies, in_braces
+from sceneql.language.dashed import names_alone, undashed
 from sceneql.language.repeat import numbered, read_repeat
 from sceneql.language.scope import Broken, Entry, Expanded, Given, Scope
 from sceneql.language.sections import Written, duplicate, empty, read_entry, section, with_known_keys
-from sceneql.language.tree import Mapping, Node, Scalar, broken, hole, unsure
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken, hole, unsure
 from sceneql.quantities.diagnostic import Diagnostics, Note, nearest, suggestion
 from sceneql.quantities.span import Span
 
@@ -138,7 +139,8 @@ class _Expander:
         equals = [_EQUALS.fullmatch(one) for one in pieces if one]
         told = " and ".join(f"`{one[1]}: {one[2]}`" for one in equals if one is not None)
         each = ", each on a line of its own" if len(equals) > 1 else ""
-        help = f"write {told}{each}" if equals and all(equals) else f"write `{key}: {{name: ...}}`"
+        inner = undashed(node) or (names_alone(node) if key == "fields" else None) or "{name: ...}"
+        help = f"write {told}{each}" if equals and all(equals) else f"write `{key}: {inner}`"
         self.found.error("section-shape", f"'{key}' holds values by name", node.span, help=help)
         return {}
 
@@ -151,6 +153,13 @@ class _Expander:
                 if name == "time":
                     message = "'time' is the time of the film's moments, and cannot name anything else"
                     self.found.error("part-name", message, written.span)
+                if key == "define" and name[:1].isdigit() and "." not in name:
+                    message = f"'{name}' cannot be the name of a value"
+                    better = re.sub(r"^(\d+)_*(\w*)$", r"\2\1", name)
+                    help = f"a name begins with a letter: write `{better}`, here and where it is used"
+                    self.found.error("part-name", message, written.span, help=help)
+                    for part in (name, name.lstrip("0123456789_"), better):
+                        self.done.broken.add(part)
                 if name in seen:
                     duplicate(name, seen[name], written, self.found)
                 else:
@@ -171,7 +180,7 @@ class _Expander:
             known = ("fields", "gives", "parts", *self.families)
             node = with_known_keys(node, known, "a template", self.done.broken, self.found)
             written = node.entries.get("fields")
-            partial = node.partial or (written is not None and unsure(written))
+            partial = node.partial or (written is not None and (unsure(written) or isinstance(written, Sequence)))
             self.read[name] = _Template(
                 self.named(node, "fields"), self.named(node, "gives"), self.local(name, node), partial
             )

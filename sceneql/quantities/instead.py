@@ -57,6 +57,7 @@ _CALLS = (
     ("cosd", 1, "cos({0*deg})"),
     ("tand", 1, "tan({0*deg})"),
     ("uniform rand_range random_range randf_range randint randrange random.range", 2, "mix({0}, {1}, random(1))"),
+    ("float64 float32 float16 float int64 int32 int16 int8 uint8 double", 1, "{0}"),
     ("dist", 2, "distance({0}, {1})"),
     ("mag magnitude", 1, "length({0})"),
 )

@@ -14,6 +14,7 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler.annotations import unwrap
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.meant.by_value import by_value
 from sceneql.compiler.meant.chained import swept
 from sceneql.compiler.meant.going_along import carried
 from sceneql.compiler.meant.own_values import in_si
@@ -52,6 +53,8 @@ def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> st
     sweep = node.entries.get("sweep")
     if "sweep" in known and isinstance(sweep, Scalar) and (path := swept(reader, node.entries, sweep.text)) is not None:
         return path
+    if (told := by_value(reader, cls, name, node)) is not None:
+        return told
     if (carrier := carried(reader, cls, name, node)) is not None:
         return carrier
     if not issubclass(cls, kinds.Kind):
@@ -67,7 +70,10 @@ def by_record(reader: Any, cls: type[BaseModel], name: str, node: Mapping) -> st
         if (around := _around(reader, cls, name, node)) is not None:
             return around
         plain = unwrapped(node, cls.family, reader.names.catalogue)
-        return balls_of(reader.names, node) if plain is None else f"{ANOTHER}: write `{plain}`"
+        if plain is not None:
+            return f"{ANOTHER}: write `{plain}`"
+        named = node.entries[name].span.text.removesuffix(".positions") in reader.names.parts
+        return balls_of(reader.names, node) if named else None
     told = _by_names(reader, cls, name, node) or _inside_one(cls, name, node) or _of_force(reader, cls, name, node)
     return told or _of_one(reader, cls, name, node) or _system(known, name, node) or _thrown(known, name, node)
 

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from math import prod
@@ -15,14 +16,28 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler import values
 from sceneql.compiler.annotations import quantities
+from sceneql.compiler.meant.own_values import in_si
 from sceneql.kinds.word import read_default
 from sceneql.language.tree import Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.dimension import LENGTH, Dimension
 from sceneql.quantities.units import format_quantity
 
+FLAT = 2
+"""Sides of a box in the plane."""
 SIZE = "size"
 """The field that tells how large a thing is along its axes."""
+PARABOLA = re.compile(r"y\*\(0\.4 - y\)")
+"""What comes in by height in the manual's example, of a box 0.4 m high."""
+
+
+def in_own_box(reader: Any, written: Mapping[str, Node], first: int) -> None:
+    """Let the helps from error number ``first`` on that show what comes in by height do so for the box's own."""
+    size = in_si(written[SIZE].span.text) if SIZE in written else []
+    for k, one in enumerate(reader.found.found[first:], first) if len(size) == FLAT and "corner" not in written else ():
+        if one.help is not None and PARABOLA.search(one.help):
+            own = PARABOLA.sub(f"y*({size[1]:g} - y)", one.help)
+            reader.found.found[k] = replace(one, help=own)
 
 
 def by_own_size(reader: Any, written: Mapping[str, Node], cls: type[BaseModel], name: str, first: int) -> None:

@@ -17,7 +17,7 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler.annotations import marks_of, quantities
 from sceneql.compiler.meant import quantity_help as helped
-from sceneql.compiler.meant.by_size import by_own_size
+from sceneql.compiler.meant.by_size import by_own_size, in_own_box
 from sceneql.compiler.meant.listed_states import listed_states
 from sceneql.compiler.meant.values_elsewhere import along_default, elsewhere, first_of, middle_of_ends
 from sceneql.compiler.names import Names
@@ -52,6 +52,9 @@ AXES = {
 """Directions by the names of axes."""
 THREE = 3
 """Rows of a matrix in space."""
+TORQUES = ("torque", "moment")
+"""Fields of an energy that is measured in N*m."""
+FORCE = "is a force (N)"
 PLANAR = "is a vector of 3, not a vector of 2"
 """What is told of a vector without one of its components."""
 SINGLE = " is a single value, not a vector"
@@ -82,6 +85,7 @@ def better_alone(
     info = field_of(cls, name)
     helped.by_own_density(reader, written, before)
     by_own_size(reader, written, cls, name, before)
+    in_own_box(reader, written, before)
     if len(found) == before:
         return
     told = [(one.code, one.help) for one in found[before:]]
@@ -116,6 +120,8 @@ def better_alone(
         one = helped.other_output(reader, node.items[0], info, name)
         whole = (one or "").replace("write `", f"it is one place, without brackets: write `{name}: ", 1)
         found[before] = replace(found[before], help=whole or help)
+    elif code == "unknown-name" and isinstance(node, Sequence) and (item := helped.of_item(reader, node, info, name)):
+        found[before] = replace(found[before], help=item)
     elif code == "unknown-name" and helped.is_part(reader, node):
         found[before] = replace(found[before], help=helped.other_output(reader, node, info, name) or help)
     elif code == "unknown-name" and any(mark.direction for mark in quantities(info)) and node.span.text in AXES:
@@ -154,11 +160,14 @@ def better_alone(
     better = elsewhere(reader, node, info, rest) if shaped or pointing else None
     if better is None and shaped:
         better = helped.other_output(reader, node, info, name)
+    if better is None and name in TORQUES and found[before].message.endswith(FORCE) and isinstance(node, Scalar):
+        better = f"a torque is a force times the length of its lever: write `{name}: {node.span.text}*m`"
     better = better or helped.for_each(reader, node, cls, name, title)
     if better is None and (diagonal := _diagonal(node)) is not None:
         better = f"it has the three on the diagonal: write `{name}: {diagonal}`"
     if better is None and found[before].message.endswith(PLANAR):
         better = "a number is missing: it has one for each of x, y and z"
+        better += "; at a side of the picture it stands by `place: top left`" if "place" in known else ""
     if better is None and found[before].message.startswith(f"{name}{SINGLE}"):
         better = first_of(name, node)
     if better is None and pointing and not shaped:

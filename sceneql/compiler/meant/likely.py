@@ -305,15 +305,15 @@ def value_alone(reader: Any, node: Node, arms: tuple[Any, ...], what: str) -> st
 
 def _named(reader: Any, node: Scalar, cls: type[BaseModel]) -> str | None:
     """The help for a part's name in place of a record that refers to a part, or reads one, in one field: a drift."""
-    if node.text not in reader.names.parts:
+    part = reader.names.part_of(node.text)[0]
+    if part not in reader.names.parts:
         return None
-    families = reader.names.catalogue.families_of(reader.names.parts[node.text].word)
-    told = []
+    families, told = reader.names.catalogue.families_of(reader.names.parts[part].word), []
     for key, info in cls.model_fields.items():
         name = kinds.written_name(key)
         if any(isinstance(mark, kinds.Refers) and mark.family in families for mark in marks_of(info)):
-            told.append(f"{{{name}: {node.text}}}")
-        elif any(mark.dimension is None for mark in quantities(info)):
+            told.append(f"{{{name}: {part}}}")
+        elif part == node.text and any(mark.dimension is None for mark in quantities(info)):
             other = other_output(reader, node, info, name)
             told += [] if other is None else [f"{{{name}: {other.split('`')[1]}}}"]
     return f"write `{told[0]}`" if len(told) == 1 else None

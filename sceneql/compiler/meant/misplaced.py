@@ -38,6 +38,8 @@ LENGTHS = ("time", "duration", "length", "seconds")
 """Sections of other programs for how long a film lasts."""
 SHOWN = 200
 """Longest value that a message repeats."""
+VARIED = ("solvers", "cameras", "outputs")
+"""Families of which one part by another word makes a variant."""
 SWITCHES = ("yes", "true", "on")
 
 
@@ -206,6 +208,7 @@ class _Section:
 def improve_sections(script: Script, catalogue: Catalogue, reader: Any, found: Diagnostics) -> None:
     """Let the errors of unknown sections say in which entry what is written there belongs, with its value."""
     places = {node.span.start: key for key, node in script.root.keys.items()}
+    _improve_variants(script, catalogue, found)
     known = [*catalogue.families, *Settings.model_fields]
     for k, one in enumerate(found.found):
         key = places.get(-1 if one.span is None else one.span.start)
@@ -238,3 +241,19 @@ def _field(cls: type[BaseModel], key: str, exact: bool) -> str | None:
     """The field of a record by its name, or (``exact`` False) by one that other programs have."""
     known = [written_name(name) for name in cls.model_fields]
     return key if key in known else None if exact else same_as(key, known)
+
+
+def _improve_variants(script: Script, catalogue: Catalogue, found: Diagnostics) -> None:
+    """Let the error of variants in a list of words of one family say the path of what they vary: of solvers."""
+    node = script.root.entries.get("variants")
+    items = node.items if isinstance(node, Sequence) else []
+    words = [one.text for one in items if isinstance(one, Scalar)]
+    same = [family for family in VARIED if {*words} <= {*catalogue.choices(family)}]
+    if node is None or not same or not words or len(words) < len(items):
+        return
+    part = next(iter(script.sections.get(same[0], {})), NAMES.get(same[0], "main"))
+    told = ", ".join(f"{word}: {{{same[0]}.{part}: {word}}}" for word in words)
+    for k, one in enumerate(found.found):
+        if one.code == "section-shape" and one.span == node.span:
+            help = f"each has a name, and the value by its path: write `variants: {{{told}}}`"
+            found.found[k] = replace(one, help=help)

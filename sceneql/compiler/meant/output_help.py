@@ -17,8 +17,27 @@ COORDINATES = {
 }
 """Names of a coordinate of a place, and its axis."""
 SPEEDS = ("speed", "vel", "v", "absolute_velocity")
+NATURE = {
+    "g": "9.81 m/s^2",
+    "G": "6.674e-11 m^3/(kg*s^2)",
+    "c": "3e8 m/s",
+    "k_B": "1.381e-23 J/K",
+    "kB": "1.381e-23 J/K",
+    "mu0": "1.257e-6 N/A^2",
+    "eps0": "8.854e-12 C/(V*m)",
+    "epsilon0": "8.854e-12 C/(V*m)",
+    "hbar": "1.055e-34 J*s",
+    "R_earth": "6371 km",
+    "M_earth": "5.972e24 kg",
+}
+"""Constants of nature by their usual names, which a script defines itself."""
 TURNS = ("angle", "theta", "phi", "rotation", "turn", "angles")
 """Names of the angle by which something is turned."""
+
+
+def usual(name: str) -> str:
+    """The value that a name is defined by in an example: that of a constant of nature, or a meter."""
+    return NATURE.get(name, "1 m")
 
 
 def output_alone(wanted: str, giving: Callable[[str], Collection[str]]) -> str | None:

@@ -18,7 +18,7 @@ from sceneql.compiler import values
 from sceneql.compiler.annotations import marks_of, quantities
 from sceneql.compiler.meant.values_elsewhere import quantities_fitting
 from sceneql.language.tree import Mapping as MappingNode
-from sceneql.language.tree import Node, Scalar
+from sceneql.language.tree import Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.dimension import ANGLE, DENSITY, MASS, PLAIN, Dimension
 from sceneql.quantities.expression import Expr, Number, Vector
@@ -93,6 +93,21 @@ def other_output(reader: Any, node: Node, info: Any, name: str) -> str | None:
     places = [one for one in found if one.endswith(("position", "positions"))]
     told = (places or found)[:OUTPUTS]
     return f"write {' or '.join(f'`{one}`' for one in told)}" if told else None
+
+
+def of_item(reader: Any, node: Sequence, info: Any, name: str) -> str | None:
+    """The help for a part in place of an output among the items of a list: that of its outputs which fits there."""
+    items = [one for one in node.items if is_part(reader, one)]
+    if not items:
+        return None
+    marks = [replace(mark, shape=mark.shape[1:]) for mark in quantities(info) if mark.shape]
+    part, nothing = items[0].span.text, Diagnostics()
+    names, found = replace(reader.names, found=nothing), []
+    for output in reader.names.outputs_of(part) or ():
+        one = Scalar(f"{part}.{output}", "text", False, node.source, node.start, node.start)
+        if any(values.read_value(one, mark, name, names, nothing) is not None for mark in marks):
+            found.append(one.text)
+    return f"write {' or '.join(f'`{one}`' for one in found[:OUTPUTS])}" if found else None
 
 
 def number_meant(node: Node, info: Any, name: str, code: str, help: str | None) -> str | None:

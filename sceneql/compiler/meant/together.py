@@ -15,6 +15,8 @@ from sceneql.quantities.literal import vector_meant
 
 _FIRST = re.compile(r"\{(\w+): [<\[]")
 _BLANK = re.compile(r"<(\w+)(#?)\|([^>]*)>")
+_FIRST_OF, _LAST = re.compile(r"([^\W\d][\w.]*)\[0\]"), re.compile(r"([^\W\d][\w.]*)\[-1\]")
+"""A value at the first and at the last moment, as other languages write it."""
 _BELOW = re.compile(r"([^<>=]+)(<=?|>=?|==)([^<>=]+)")
 CELLS = ("cells", "resolution", "grid", "n", "divisions", "nodes", "points")
 """Fields of other programs for a number of cells."""
@@ -101,6 +103,7 @@ def _compared(name: str, node: Mapping, known: Collection[str]) -> str | None:
         return None
     of, sign, limit = sides[1].strip(), sides[2], sides[3].strip()
     of, limit = (limit, of) if ">" in sign else (of, limit)
+    of = _LAST.sub(r"final(\1)", _FIRST_OF.sub(r"initial(\1)", of))
     return f'the two sides stand apart: write `of: "{of}", {"value" if sign == "==" else "below"}: {limit}`'
 
 

@@ -10,6 +10,7 @@ from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.compiler.annotations import first_field
+from sceneql.language.dashed import without_dashes
 from sceneql.language.one_line import one_line
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence
@@ -18,6 +19,8 @@ from sceneql.quantities.instead import instead
 
 EQUATION = re.compile(r"(?:d\(?(\w+)\)?/dt|(\w+'')|(\w+)'|(\w+)_dot)\s*=\s*(.+)")
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
+_WORD = re.compile(r"[^\W\d][\w.]*")
+_JOINED = re.compile(rf"{_WORD.pattern}(?:\s*[-+&|*,]\s*{_WORD.pattern})+")
 SEVERAL, SHOWN = 2, 200
 """Least number of fields that tell that a name is missing, and the longest text that a message repeats."""
 NAMES = ("name", "id")
@@ -62,6 +65,10 @@ def by_name(node: Node, item: Any, parts: bool) -> str:
     if sided and isinstance(node, Scalar) and (every := instead("bare.boundary", node.text)) is not None:
         return every
     items = node.items if isinstance(node, Sequence) else []
+    if (dashed := without_dashes(node)) is not None and not (parts and sided):
+        return dashed
+    if isinstance(node, Scalar) and _JOINED.fullmatch(node.text.strip()):
+        return f"several stand in a list: write `[{', '.join(_WORD.findall(node.text))}]`"
     texts = [one.span.text for one in items or [node]]
     if parts and all(text.isidentifier() for text in texts):
         told = ", ".join(f"{text}: {text.replace('_', ' ')}" for text in texts)

@@ -79,10 +79,10 @@ def report_unknown(
         unknown = [name for name in unknown if name.rpartition(".")[0] != field]
     for name in unknown:
         help = together(name, unknown, node, known)
-        final = help is not None  # what it says is of these values already
-        help = (
-            help or (said_by or {}).get(name) or whole(name, node) or instead(f"field.{title.partition('.')[0]}", name)
-        )
+        help = help or (said_by or {}).get(name)
+        help = help or whole(name, node)
+        final = help is not None and name not in (said_by or {})  # what it says is of these values already
+        help = help or instead(f"field.{title.partition('.')[0]}", name)
         help = help and filled(help, node.entries[name], known)
         if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
             space = ", with a space behind the colon" if written[2] else ""

@@ -15,9 +15,11 @@ from sceneql.kinds import Refers
 from sceneql.language.repeat import copy_meant
 from sceneql.language.scope import Entry
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
-from sceneql.quantities.diagnostic import Diagnostics, same_as, suggestion
+from sceneql.quantities.diagnostic import Diagnostics, nearest, same_as, suggestion
 from sceneql.quantities.instead import instead
 
+KEY = "color_key"
+"""What a word has that shows a field in colors."""
 OF_LAW = {
     "modulus": ("e", "young", "youngs_modulus", "young_modulus", "modulus", "elastic_modulus"),
     "poisson": ("nu", "poisson", "poisson_ratio", "poissons_ratio"),
@@ -100,6 +102,16 @@ def of_law(node: Mapping, family: str) -> str | None:
     return f"`material` is how it looks; a solid's law says it: write `law: {{neo_hookean: {{{law}}}}}`"
 
 
+def shows_nothing(name: str, mark: Refers, names: Names, catalogue: Catalogue) -> str | None:
+    """The help for a part that shows no values in colors where one that does is named: one that does; else None."""
+    if not mark.showing or hasattr(catalogue.load(mark.family, names.parts[name].word), KEY):
+        return None
+    others = [one for one, entry in names.parts.items() if hasattr(catalogue.load(mark.family, entry.word), KEY)]
+    if others:
+        return f"write `of: {others[0]}`, the {names.parts[others[0]].word}"
+    return f"a `{mark.showing}` shows one: `sceneql words {mark.showing}`"
+
+
 def beside_world(place: str) -> str:
     """The help where a tie has a position in place of a body."""
     plain = " ".join(place.strip("[]").replace(",", " ").split())
@@ -111,6 +123,9 @@ def part_meant(name: str, mark: Refers, choices: Sequenced[str], names: Names, c
     """The help for a name of no part of the mark's families; ``choices``: the names of their parts."""
     if (copy := copy_meant(name, {*choices, *names.parts})) is not None:
         return copy
+    joined = [one.strip() for one in re.split(r"[-+&|*]", name)]
+    if len(joined) > 1 and all(one in choices for one in joined) and not mark.panel:
+        return f"several stand in a list: write `[{', '.join(joined)}]`"
     if mark.bodies and name[:1] in "-[0123456789":
         return f"a place is no body: {beside_world(name)}"
     if "models" in (mark.family, mark.also) and (model := names.model_of(name)):
@@ -138,7 +153,11 @@ def part_meant(name: str, mark: Refers, choices: Sequenced[str], names: Names, c
     row = re.findall(r"[^\W\d]\w*", name)
     if mark.panel and len(row) > 1 and all(one in choices for one in row):
         return f"a row is a list: write `[[{', '.join(row)}]]`"
-    hint = instead("part", name) or suggestion(name, choices) or suggestion(name, words)
+    hint = instead("part", name) or suggestion(name, choices)
+    meant = [one for one in choices if names.parts[one].word == nearest(name, words)]
+    if hint is None and len(meant) == 1:
+        return f"write `{meant[0]}`, the {names.parts[meant[0]].word} that there is"
+    hint = hint or suggestion(name, words)
     if hint is None and mark.panel:
         hint = f"rows hold names of cameras and graphs, `[[{', '.join(choices[:2]) or 'front, top'}]]`"
         hint += "; variants stand side by side by `[{each: variant}]`: `sceneql words layout`"

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.kinds import written_name
 from sceneql.language.tree import Mapping, Node, Scalar
 from sceneql.quantities.diagnostic import nearest, same_as
+from sceneql.quantities.dimension import LENGTH
 
 SHAPES = ("geometry", "geom", "shape", "mesh", "collider", "primitive", "children")
 """Groups of other programs that hold the word of a shape."""
@@ -57,6 +59,8 @@ def _shape(key: str, value: Node, family: str, catalogue: Catalogue) -> tuple[st
     first, only = next(iter(value.entries.items()))
     if len(value.entries) == 1 and (word := _word(first, choices)) is not None:
         fields = only.entries if isinstance(only, Mapping) else {}
+        if isinstance(only, Scalar) and only.text and (size := _size(only.text, family, word, catalogue)):
+            return word, {size: only.span.text}
         return word, {name: one.span.text for name, one in fields.items()}
     typed = next((value.entries[one] for one in TYPES if isinstance(value.entries.get(one), Scalar)), None)
     word = None if typed is None else _word(typed.span.text, choices)
@@ -67,3 +71,13 @@ def _shape(key: str, value: Node, family: str, catalogue: Catalogue) -> tuple[st
 
 def _word(text: str, choices: list[str]) -> str | None:
     return text if text in choices else same_as(text, choices) or nearest(text, choices, 0.8)
+
+
+def _size(text: str, family: str, word: str, catalogue: Catalogue) -> str | None:
+    """The first field of a shape that one number, or as many as are written, may stand for: its radius, its size."""
+    count, cls = len(text.split()) - (text[-1:].isalpha()), catalogue.load(family, word)
+    shape = () if count == 1 else (count,)
+    for name, info in cls.model_fields.items() if cls is not None else ():
+        if name != "position" and any(mark.shape == shape and mark.dimension == LENGTH for mark in quantities(info)):
+            return written_name(name)
+    return None

@@ -19,6 +19,13 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState, Place, Slopes
 
 
+OF_ELEMENTS = (
+    "it holds one mass of a model, `cage.corner.position`; what pulls a solid of elements is among its `loads`:"
+    " `loads: {tip: {near: 1 0 0 m, within: 5 cm, force: 0 -5 0 N}}`"
+)
+"""The help where neither end is a mass."""
+
+
 class Spring(Force):
     """A spring between two places: F = stiffness (l - rest) + damping dl/dt along it (Hooke 1678).
 
@@ -45,7 +52,8 @@ class Spring(Force):
     def problems(self) -> Iterator[Problem]:
         """Two ends without a mass."""
         if not self.targets():
-            yield Problem("a spring needs a mass at one of its ends, as `from: cage.corner.position`")
+            text = "a spring needs a mass at one of its ends, as `from: cage.corner.position`"
+            yield Problem(text, help="what moves is of a model: `particles`, `mass_spring`, or `rigid`")
 
     def targets(self) -> tuple[str, ...]:
         """The models of the masses at its ends."""
@@ -82,7 +90,7 @@ class Spring(Force):
         if places[0] is not None and places[0] == places[1]:
             raise ScriptError([Diagnostic("same-mass", "a spring leads from a mass to itself", self.to.span or span)])
         if places == [None, None]:
-            raise ScriptError([Diagnostic("no-mass", "a spring needs a mass at one of its ends", span)])
+            raise ScriptError([Diagnostic("no-mass", "a spring needs a mass at one of its ends", span, OF_ELEMENTS)])
         length = float(np.linalg.norm(np.subtract(assembly.initial(self.to), assembly.initial(self.from_))))
         rest = assembly.floats([length if self.rest is None else self.rest])
         ends = [

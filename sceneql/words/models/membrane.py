@@ -152,7 +152,8 @@ class Membrane(Model):
     def problems(self) -> Iterator[Problem]:
         """A prestress of a tension."""
         if self.law.tension is not None and self.prestress > 0.0:
-            yield Problem("a `tension` is all the tension that there is", ("prestress",), at_key=True)
+            help = "leave out `prestress`, or write its tension into the law"
+            yield Problem("a `tension` is all the tension that there is", ("prestress",), at_key=True, help=help)
 
     def insides(self) -> Iterable[Ref]:
         """The object."""

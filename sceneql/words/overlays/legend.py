@@ -50,7 +50,12 @@ class Legend(Overlay):
             try:
                 parse_unit(self.unit)
             except ScriptError as error:
-                yield Problem(error.diagnostics[0].message, ("unit",), code=error.diagnostics[0].code)
+                yield Problem(
+                    error.diagnostics[0].message,
+                    ("unit",),
+                    code=error.diagnostics[0].code,
+                    help=error.diagnostics[0].help,
+                )
 
     def places(self) -> tuple[str, ...]:
         """Both sides."""
