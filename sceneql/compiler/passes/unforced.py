@@ -56,7 +56,7 @@ def warn_of_unforced(tasks: Mapping[str, Task], groups: Sequence[Island], found:
         found.warning("nothing-moves", text, task.span, help=help)
     for island in groups:
         models = [tasks[name] for name in island.models]
-        if len(solved) == len(models) and (all(map(_held, models)) or (not led and all(map(_stays, models)))):
+        if len(solved) == len(models) and all(map(_held, models)):
             text = f"all masses of '{models[0].name}' are fixed: nothing moves"
             help = "leave out `fixed: yes` of those that should move"
             found.warning("nothing-moves", text, models[0].span, help=help)
@@ -217,11 +217,6 @@ def _held(task: Task) -> bool:
     """Whether a model has masses by name, all of which are fixed."""
     named = [one for name in ("list", "masses", "bodies") for one in (getattr(task.kind, name, None) or {}).values()]
     return bool(named) and all(getattr(one, "fixed", False) for one in named)
-
-
-def _stays(task: Task) -> bool:
-    """Whether a model is one body, or a list of them, without any that is not fixed."""
-    return _held(task) or (getattr(task.kind, "bodies", ()) is None and getattr(task.kind, "fixed", False) is True)
 
 
 def starts_moving(part: Any) -> bool:
