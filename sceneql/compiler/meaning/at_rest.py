@@ -12,6 +12,8 @@ from sceneql.quantities.diagnostic import Diagnostics
 
 FACTORS = ("charge", "strength", "field_", "components")
 """Fields of forces that are 0 where the force is."""
+JOINT = ("between", "at", "axis", "rest", "restitution")
+"""Fields of a joint that move nothing by themselves."""
 
 
 def warn(facts: Facts, found: Diagnostics) -> None:
@@ -20,18 +22,24 @@ def warn(facts: Facts, found: Diagnostics) -> None:
     told = [one.span for one in found.found if one.code == "nothing-moves"]
     for island in facts.groups if facts.whole else ():
         models = [facts.tasks[name] for name in island.models]
-        if any(task.span in told for task in models) or (led and island.contacts) or facts.ties(island):
+        if any(task.span in told for task in models) or (led and island.contacts):
             continue
         if not all(_rests(task.kind) and not starts_moving(task.kind) for task in models):
             continue
         forces = facts.forces(island)
+        ties = facts.ties(island)
+        if ties and (led or forces or not all(_joins(one.kind) for one in ties) or not all(map(_inert, models))):
+            continue
         why = [_idle(force) for force in forces]
-        if not all(why) or (not forces and all(_inert(task) for task in models)):
+        if not all(why) or (not forces and not ties and all(_inert(task) for task in models)):
             continue  # those without any force are told by themselves
         name = models[0].name
         if forces:
             text = f"'{forces[0].name}' does not move '{name}', which starts at rest: {why[0]}"
             help = f"give '{name}' a `velocity`" if "speed" in why[0] else "write another value, or another force"
+        elif ties:
+            text = f"no force acts on '{name}', and it starts at rest, in joints: it stays so"
+            help = "write `forces: [gravity]`, or give it a `velocity` or a `spin`"
         else:
             text = f"no force acts on '{name}', and it starts at rest, as long as its springs are: it stays so"
             help = "write `forces: [gravity]`, or give it a `velocity`"
@@ -40,6 +48,12 @@ def warn(facts: Facts, found: Diagnostics) -> None:
 
 def _inert(task: Task) -> bool:
     return isinstance(task.kind, Model) and task.kind.inert
+
+
+def _joins(kind: Any) -> bool:
+    """Whether a tie only joins its bodies at a place: all else that it may say is as by default."""
+    more = [value for field, value in kind if field not in JOINT]
+    return getattr(kind, "at", None) is not None and all(value is None for value in more)
 
 
 def _values(task: Task) -> Any:

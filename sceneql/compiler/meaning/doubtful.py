@@ -16,6 +16,7 @@ from sceneql.compiler.meaning import (
     fixed_points,
     hardly_moves,
     joined,
+    left_out,
     lighting,
     maps,
     missed,
@@ -28,6 +29,7 @@ from sceneql.compiler.meaning import (
     still_keys,
     strobing,
     tied,
+    unattracted,
     unread_text,
     unused_parts,
     views,
@@ -64,6 +66,8 @@ ALL = (
     still_fields,
     still_flows,
     braked,
+    left_out,
+    unattracted,
 )
 
 

@@ -151,15 +151,16 @@ def warn_of_dim(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     if not powers or not all(isinstance(one, Value) and one.constant for one in powers):
         return
     power = sum(float(one.number()) for one in powers if isinstance(one, Value))
-    if 0.0 < power < DIM:
-        bright = power / (4.0 * pi**2)
-        text = f"'{lights[0].name}' is dim: what is white and 1 m away is {bright:.1g} as bright as white"
-        found.warning("dim-light", text, lights[0].span, help="a lamp in a room has 60 W: write `power: 60 W`")
-        return
     lamps = [_place(getattr(task.kind, "position", None)) for task in lights]
     shown = [task for task in tasks.values() if isinstance(task.kind, Object) and not task.kind.grounds]
     near = [place for task in shown for place in _places(task, tasks)]
     away = [dist(lamp, place) for lamp in lamps if lamp is not None for place in near]
+    lit = bool(away) and power >= DIM * min(away) ** 2  # a small scene: as bright there as a larger lamp makes others
+    if 0.0 < power < DIM and not lit:
+        bright = power / (4.0 * pi**2)
+        text = f"'{lights[0].name}' is dim: what is white and 1 m away is {bright:.1g} as bright as white"
+        found.warning("dim-light", text, lights[0].span, help="a lamp in a room has 60 W: write `power: 60 W`")
+        return
     if power > 0.0 and None not in lamps and away and power < FAINT * (2.0 * pi * min(away)) ** 2:
         text = f"'{lights[0].name}' is {min(away):.3g} m away: what is white there is "
         text += f"{power / (2.0 * pi * min(away)) ** 2:.1g} as bright as white"
