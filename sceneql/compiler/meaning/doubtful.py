@@ -16,7 +16,6 @@ from sceneql.compiler.meaning import (
     fixed_points,
     hardly_moves,
     joined,
-    left_out,
     lighting,
     maps,
     missed,
@@ -66,7 +65,6 @@ ALL = (
     still_fields,
     still_flows,
     braked,
-    left_out,
     unattracted,
 )
 
