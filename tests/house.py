@@ -199,6 +199,7 @@ BARS = (
     Bar("largest room, share of lines [%]", lambda house: 100 * max(room_shares(house).values()), 15),
     Bar("loose files beside sub-rooms", lambda house: max(loose_files(house)[0].values()), 25),
     Bar("files in a flat folder", lambda house: max(loose_files(house)[1].values()), 35),
+    Bar("lines of the longest file", lambda house: max(file.lines for file in house.files), 400),
     Bar("circles of files, types counted", lambda house: len(circles(house.imports)), 0),
     Bar("arrows against the layers", lambda house: len(arrows_up(house)), 0),
     Bar("files in words/ that are no word by the one rule", lambda house: len(misplaced_words(house)), 0),

@@ -62,7 +62,7 @@ def _solid(facts: Facts, task: Task, pull: float, told: list[Any], found: Diagno
     high = sides[1] if kind.rotation is None else min(sides)
     load = float(density) * pull * high
     if load > CRUSHED * modulus:
-        text = f"'{task.name}' collapses: its weight, {high:.3g} m high, presses by {_three(load)} Pa, "
+        text = f"'{task.name}' collapses: its weight, {high:.3g} m high, makes {_three(load)} Pa, "
         text += f"and its modulus is {modulus:.3g} Pa"
         meant = next(modulus * by for by in (1e3, 1e6, 1e9, 1e12) if load < FIRM * modulus * by or by > 1e9)
         size, unit = next(one for one in UNITS if meant >= one[0] or one[0] == 1.0)

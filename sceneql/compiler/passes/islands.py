@@ -123,7 +123,14 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
             message = f"{tasks[solver].word} does not march what collides: {marching.refuses_contacts}"
             found.error("refuses-contacts", message, tasks[solver].span, help=_COLLIDES)
         suits = _SUITS.get(marching.marches) if isinstance(marching, Solver) else None
-        if suits is not None and not any(getattr(task.kind, suits[0], False) for task in models):
+        fitting = suits is not None and (
+            any(getattr(task.kind, suits[0], False) for task in models)
+            or (
+                # one may have been lost by an error of its own
+                bool(found.errors) and not any(getattr(task.kind, suits[0], False) for task in tasks.values())
+            )
+        )
+        if suits is not None and not fitting:
             message = f"{tasks[solver].word} marches {suits[1]}, and '{group[0]}' is none"
             found.error("no-grid" if suits[0] == "is_field" else "no-flow", message, tasks[solver].span, help=_OTHER)
         result.append(
