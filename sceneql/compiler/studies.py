@@ -27,6 +27,11 @@ _EVEN = re.compile(
     rf"(?:linspace|logspace|geomspace|arange|range)\(\s*({NUMBER}[^,]*),\s*({NUMBER}[^,)]*)(?:,\s*(\d+))?"
 )
 POINTS = 13
+_LOW, _HIGH = ("from", "start", "min", "low", "first", "lower"), ("to", "end", "stop", "max", "high", "last", "upper")
+_COUNT = ("steps", "points", "n", "count", "num", "number", "samples")
+"""Fields of other programs for the ends of a range, and how many values it has."""
+_TWO_UNITS = re.compile(r"(\S+ ?[^\W\d][^.]*?)\s*\.\.\s*([^,]+?)\s*(?:,\s*(\d+) points?)?(?:,\s*(linear|log))?")
+"""A range with a unit at both ends."""
 MOST_POINTS = 200
 HELP = "write `1e0 .. 1e12 N/m, 13 points`, or a list of values"
 
@@ -60,6 +65,9 @@ def tried(path: str, node: Node) -> list[Tried]:
             help = _by_steps(steps, "range" in text)
         elif even is not None:
             help = f'write `"{_ends_of(even[1], even[2])}, {even[3] or POINTS} points, {_way(node)}"`'
+        if (spread := _spread(node) or _TWO_UNITS.fullmatch(text)) is not None:
+            both = _ends_of(spread[1], spread[2])
+            help = f'write `"{both}, {spread[3] or POINTS} points{"" if spread[4] is None else ", " + spread[4]}"`'
         raise ScriptError([Diagnostic("sweep-shape", "this is neither a range nor a list", node.span, help)])
     low, high, unit, count, way = float(found[1]), float(found[2]), found[3], float(found[4] or POINTS), found[5]
     if not (math.isfinite(low) and math.isfinite(high)):
@@ -86,6 +94,16 @@ def _by_steps(steps: re.Match[str], open_end: bool) -> str:
         return HELP
     ends = f"{steps['low']} .. {first + (count - 1) * by:g} {steps['unit'].strip()}".rstrip()
     return f'write `"{ends}, {count} points, linear"`'
+
+
+def _spread(node: Node) -> tuple[str, str, str, str | None, str | None] | None:
+    """A range in fields of other programs, ``{from: 1 ms, to: 50 ms, steps: 6}``, as the groups of `_TWO_UNITS`."""
+    fields = {name.lower(): one.span.text for name, one in node.entries.items()} if isinstance(node, Mapping) else {}
+    low, high, count = (next((fields[one] for one in names if one in fields), None) for names in (_LOW, _HIGH, _COUNT))
+    if low is None or high is None:
+        return None
+    even = "linear" if count is not None else None
+    return "", low, high, count if count is None or count.isdecimal() else None, even
 
 
 def _ends_of(low: str, high: str) -> str:

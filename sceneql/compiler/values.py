@@ -111,6 +111,8 @@ def read_expr(
             listed = (shape is None or shape[:1] == (None,)) and len(texts) == len(node.entries)
             help = times_meant(node, what) or timed(node) or (pair_meant(node, dimension) if shape == (2,) else None)
             help = help or (f"write `[{', '.join(texts)}]`" if listed else None)
+            if len(node.entries) == 1 and texts in ([""], ["null"]) and help is None:
+                help = f"a name stands by itself, without braces: write `{what}: {next(iter(node.entries))}`"
             help = f"a name has one value: write `{node.span.text[1:-1]}`, each by itself" if what == "define" else help
             found.error("wrong-shape", f"{what} is a value, not a group of fields", node.span, help=help)
     return None

@@ -349,8 +349,9 @@ class _Composer:
         """Report a key that is no text, once for nested ones; its value is left out."""
         self.odd.append(mapping)
         if not self.nameless:
-            span = Span(self.source, node.start, node.end)
-            self.error("key-not-text", "a key is a single word or text", span, help="write `name: value`")
+            alone = re.match(r"\{\{\s*([\w.]+)\s*\}\}", self.source.text[node.start - 1 : node.start + 80])
+            help = f"a name stands by itself, without braces: write `{alone[1]}`" if alone else "write `name: value`"
+            self.error("key-not-text", "a key is a word or text", Span(self.source, node.start, node.end), help=help)
         if not isinstance(node, Scalar):
             self.nameless[id(node)] = node
 

@@ -224,6 +224,11 @@ OF_NAMED = (
         "young youngs_modulus young_modulus modulus elastic_modulus E",
         "it has springs, each with a `stiffness`: of a rod it is modulus times area over length, `100 N/m`",
     ),
+    (
+        "field.boundary",
+        "absorbing absorb radiating nonreflecting transparent",
+        "waves go out through it by `open: yes`",
+    ),
     ("field.arrow", "along", "what it shows is its `vector: ball.velocity`"),
     ("field.arrow", "length size factor", "it is its vector times `scale`, in meters: of a velocity `scale: 0.1`"),
     (

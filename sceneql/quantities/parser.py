@@ -30,6 +30,7 @@ from sceneql.quantities.spaced import (
     indexed,
     meant_by_equals,
     modulo,
+    named_by_dollar,
     other_signs,
     per_unit,
     ternary,
@@ -261,7 +262,7 @@ class _Parser:
         self.token, (self.start, self.end) = found[self.kind], found.span(self.kind)
         if self.kind == "bad":
             message = f"'{self.token}' cannot stand in an expression"
-            help = instead("sign", self.token)
+            help = named_by_dollar(self.text, self.start) or instead("sign", self.token)
             if (self.token == "\\" or (self.token == "{" and self.before[-1:] in ("^", "_"))) and (
                 plain := from_latex(self.text)
             ):

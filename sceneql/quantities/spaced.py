@@ -21,6 +21,7 @@ _JOINS = tuple("+*/^<>=,")
 _INDEX = re.compile(r"\[\s*(\d+)\s*\](?!\.)")
 _COPY = re.compile(r"\[\s*([^\[\]{}\"']+?)\s*\](\.[\w.]+)?")
 _LINKED = re.compile(r"[^\W\d]\w*(?:\.\w+)+")
+_DOLLAR = re.compile(r"\$(?:\{\s*)?([^\W\d][\w.]*)(?:\s*\})?")
 AXES = "xyz"
 VECTORS = ("position", "velocity", "acceleration", "spin", "force", "torque", "momentum", "center")
 """Outputs that are vectors of three."""
@@ -303,6 +304,14 @@ def parted_meant(line: str) -> str | None:
     if written is not None:
         return f"a name has a colon behind it: write `{written[1]}: {written[2].strip()}`"
     return None if glued is None else f"write `{glued[1]}: {glued[2]}`, with a space behind the colon"
+
+
+def named_by_dollar(text: str, at: int) -> str | None:
+    """The help for a name behind a dollar at ``at`` in a text, ``$r`` or ``${r}``; None of Houdini's own."""
+    found = _DOLLAR.match(text, at)
+    if found is None or found[1] in ("T", "F", "t", "time"):
+        return None
+    return f"a name stands by itself: write `{text[:at]}{found[1]}{text[found.end() :]}`"
 
 
 def indexed(expr: Expr, before: str, text: str, at: int) -> str | None:

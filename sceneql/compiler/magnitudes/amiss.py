@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from sceneql.compiler.magnitudes import collapses, creeping, drifting, no_side, stiff, thousandths
+from sceneql.compiler.magnitudes import collapses, creeping, drifting, no_side, on_held, stiff, thousandths
 from sceneql.compiler.meaning.facts import Facts
 from sceneql.quantities.diagnostic import Diagnostics
 
-ALL = (collapses, creeping, drifting, no_side, stiff, thousandths)
+ALL = (collapses, creeping, drifting, no_side, on_held, stiff, thousandths)
 
 
 def warn_of_magnitudes(facts: Facts, found: Diagnostics) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from math import hypot
 from typing import Any, cast
 
@@ -13,8 +14,11 @@ from sceneql.graph import Task
 from sceneql.kinds import Interaction
 from sceneql.quantities.diagnostic import Diagnostics
 
+_BARE = re.compile(r"[\d.]+(?:e[-+]?\d+)?")
 CRUSHED = 10.0
 """Weight of a column over what it resists by, from which on it certainly lies flat."""
+OF_METALS, TABLED = 1700.0, 1000.0
+"""Density [kg/m^3] of the lightest of metals, and what their moduli are below in GPa."""
 FIRM = 0.1
 """The same, at which it keeps its form."""
 WATER = 1000.0
@@ -65,8 +69,10 @@ def _solid(facts: Facts, task: Task, pull: float, told: list[Any], found: Diagno
         text = f"'{task.name}' collapses: its weight, {high:.3g} m high, makes {_three(load)} Pa, "
         text += f"and its modulus is {modulus:.3g} Pa"
         meant = next(modulus * by for by in (1e3, 1e6, 1e9, 1e12) if load < FIRM * modulus * by or by > 1e9)
+        if formula.span is not None and _BARE.fullmatch(formula.span.text) and density > OF_METALS:
+            meant = modulus * (1e9 if modulus < TABLED else 1e6)  # as tables have it
         size, unit = next(one for one in UNITS if meant >= one[0] or one[0] == 1.0)
-        help = f"write `modulus: {meant / size:.3g} {unit}`; rubber has some MPa, jelly some kPa"
+        help = f"write `modulus: {meant / size:.3g} {unit}`; metals have some GPa, rubber some MPa, jelly some kPa"
         found.warning("too-soft", text, formula.span or task.span, help=help)
 
 
