@@ -16,6 +16,7 @@ from sceneql.kinds.texts import shown_unit
 from sceneql.pictures.anchors import projected
 from sceneql.pictures.lettering import Letterer, round_numbers
 from sceneql.pipeline import Report, Tools, load, simulate
+from sceneql.quantities.diagnostic import ScriptError
 
 SCENE = """
 clock: {{end: 1 s, fps: 1}}
@@ -86,7 +87,7 @@ def test_what_is_not_covered_stays_as_it_is(tmp_path):
 
 
 def test_a_legend_of_something_else_is_refused_with_its_line(tmp_path):
-    with pytest.raises(RunFailure, match="shows no field in colors"):
+    with pytest.raises(ScriptError, match=r"shows no field in colors\n(.*\n)*help: write `of: map`"):
         picture(tmp_path, "{bar: {legend: {of: ball}}}")
     with pytest.raises(RunFailure, match=r"a density .*, which kg is no unit of"):
         picture(tmp_path, "{bar: {legend: {of: map, unit: kg}}}")

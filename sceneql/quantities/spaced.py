@@ -25,6 +25,8 @@ _DOLLAR = re.compile(r"\$(?:\{\s*)?([^\W\d][\w.]*)(?:\s*\})?")
 AXES = "xyz"
 VECTORS = ("position", "velocity", "acceleration", "spin", "force", "torque", "momentum", "center")
 """Outputs that are vectors of three."""
+LONGEST = 200
+"""Longest text in which a range is looked for, in a time that goes by the square of that."""
 OVER_TIME = ("energy", "kinetic", "potential", "mass", "volume", "angle", "speed")
 """Outputs that are one number at each instant."""
 _CALLED = re.compile(
@@ -119,7 +121,7 @@ def two_ends(text: str) -> str | None:
 
     ``-30 30`` for ``-30..30``, ``1 3 s`` for ``1 s to 3 s``, ``[1 s, 3 s]`` and ``random(1, 3) s``; None of others.
     """
-    found = _RANGE.fullmatch(text) or _DRAWN.fullmatch(text)
+    found = (_RANGE.fullmatch(text) or _DRAWN.fullmatch(text)) if len(text) <= LONGEST else None
     if found is None or (found[2] and found[4] and found[2] != found[4]):
         return None
     behind = found[5] if found.re is _DRAWN else None

@@ -248,8 +248,10 @@ def _improve_variants(script: Script, catalogue: Catalogue, found: Diagnostics) 
     node = script.root.entries.get("variants")
     items = node.items if isinstance(node, Sequence) else []
     words = [one.text for one in items if isinstance(one, Scalar)]
+    if node is None or not words or len(words) < len(items):
+        return
     same = [family for family in VARIED if {*words} <= {*catalogue.choices(family)}]
-    if node is None or not same or not words or len(words) < len(items):
+    if not same:
         return
     part = next(iter(script.sections.get(same[0], {})), NAMES.get(same[0], "main"))
     told = ", ".join(f"{word}: {{{same[0]}.{part}: {word}}}" for word in words)
