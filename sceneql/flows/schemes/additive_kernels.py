@@ -130,6 +130,36 @@ def quiet(a, exact, still, y, room, more, floats, tables, numbers):
     return solved
 
 
+@lean(types.float64(A, A, A, F, A, I), inner=True)
+def worst_error(wrong, y0, y1, tolerance, sizes, numbers):
+    """The error ``wrong`` of a step from y0 to y1, in parts of what each block may have; ``sizes`` of blocks go on.
+
+    Infinite where it is not finite.
+    """
+    worst = 0.0
+    for block in range(numbers[BLOCKS]):
+        place = numbers[FLOW_AT] - 2 * numbers[BLOCKS] + 2 * block
+        at, count = numbers[place], numbers[place + 1]
+        total = 0.0
+        size, had = sizes[block], sizes[block]
+        for k in range(at, at + count):
+            total += wrong[k] * wrong[k]
+            had = max(had, abs(y0[k]))
+            size = max(size, abs(y0[k]), abs(y1[k]))
+        if not math.isfinite(total):
+            return math.inf
+        # What grows out of nothing, as t^2, has the same error at any length of its first step in parts of what it is.
+        part = tolerance if had > 0.0 else 1.0
+        if size > 0.0 and count > 0:
+            worst = max(worst, math.sqrt(total / count) / (part * size))
+    if worst <= 1.0:
+        for block in range(numbers[BLOCKS]):
+            place = numbers[FLOW_AT] - 2 * numbers[BLOCKS] + 2 * block
+            for k in range(numbers[place], numbers[place] + numbers[place + 1]):
+                sizes[block] = max(sizes[block], abs(y1[k]))
+    return worst
+
+
 @lean(DENSE)
 def dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
     """The cubic through the ends of the step and its rates there; in a step that begins, without the rate at its start,
@@ -221,25 +251,4 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     settings[latest] = t + h
     if not (project(rate1, RATE, floats, one) and solved):
         y1[one[AT]] = math.nan
-    worst = 0.0
-    for block in range(numbers[BLOCKS]):
-        place = numbers[FLOW_AT] - 2 * numbers[BLOCKS] + 2 * block
-        at, count = numbers[place], numbers[place + 1]
-        total = 0.0
-        size, had = sizes[block], sizes[block]
-        for k in range(at, at + count):
-            total += wanted[k] * wanted[k]
-            had = max(had, abs(y0[k]))
-            size = max(size, abs(y0[k]), abs(y1[k]))
-        if not math.isfinite(total):
-            return math.inf
-        # What grows out of nothing, as t^2, has the same error at any length of its first step in parts of what it is.
-        part = tolerance if had > 0.0 else 1.0
-        if size > 0.0 and count > 0:
-            worst = max(worst, math.sqrt(total / count) / (part * size))
-    if worst <= 1.0:
-        for block in range(numbers[BLOCKS]):
-            place = numbers[FLOW_AT] - 2 * numbers[BLOCKS] + 2 * block
-            for k in range(numbers[place], numbers[place] + numbers[place + 1]):
-                sizes[block] = max(sizes[block], abs(y1[k]))
-    return worst
+    return worst_error(wanted, y0, y1, tolerance, sizes, numbers)

@@ -24,7 +24,6 @@ from sceneql.flows.layout import AT, CHANGE, FACES, RATE, SKIP, VELOCITY, WORK
 from sceneql.flows.projection_kernels import project
 from sceneql.flows.schemes.additive_kernels import (
     AXES,
-    BLOCKS,
     EXACT,
     FINE,
     FLOW_AT,
@@ -37,6 +36,7 @@ from sceneql.flows.schemes.additive_kernels import (
     implicit,
     product,
     quiet,
+    worst_error,
 )
 from sceneql.flows.schemes.operators_kernels import OPERATOR, same, solve, spread, tally
 from sceneql.grids.multigrid.stencil_kernels import dot
@@ -255,25 +255,4 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     settings[latest] = t + h
     if not (project(rate1, RATE, floats, one) and solved):
         y1[one[AT]] = math.nan
-    worst = 0.0
-    for block in range(numbers[BLOCKS]):
-        place = numbers[FLOW_AT] - 2 * numbers[BLOCKS] + 2 * block
-        at, count = numbers[place], numbers[place + 1]
-        total = 0.0
-        size, had = sizes[block], sizes[block]
-        for k in range(at, at + count):
-            total += wanted[k] * wanted[k]
-            had = max(had, abs(y0[k]))
-            size = max(size, abs(y0[k]), abs(y1[k]))
-        if not math.isfinite(total):
-            return math.inf
-        # What grows out of nothing, as t^2, has the same error at any length of its first step in parts of what it is.
-        part = tolerance if had > 0.0 else 1.0
-        if size > 0.0 and count > 0:
-            worst = max(worst, math.sqrt(total / count) / (part * size))
-    if worst <= 1.0:
-        for block in range(numbers[BLOCKS]):
-            place = numbers[FLOW_AT] - 2 * numbers[BLOCKS] + 2 * block
-            for k in range(numbers[place], numbers[place] + numbers[place + 1]):
-                sizes[block] = max(sizes[block], abs(y1[k]))
-    return worst
+    return worst_error(wanted, y0, y1, tolerance, sizes, numbers)
