@@ -177,37 +177,3 @@ def hand_over(own, mine, lines):
         line = lines[HEAD + LINE * number : HEAD + LINE * (number + 1)]
         for k in range(line[POSITION_AT], line[POSITION_AT] + 3 * line[COUNT]):
             mine[k], own[k] = own[k], 0.0
-
-
-@lean(types.boolean(A, types.int64))
-def factor(matrix, n):
-    """Cholesky's factor of a matrix (n, n), in its lower half; whether there is one."""
-    for i in range(n):
-        row = matrix[n * i : n * i + n]
-        for j in range(i + 1):
-            other = matrix[n * j : n * j + n]
-            total = row[j]
-            for k in range(j):
-                total -= row[k] * other[k]
-            if j < i:
-                row[j] = total / other[j]
-            elif not total > 0.0:
-                return False
-            else:
-                row[i] = math.sqrt(total)
-    return True
-
-
-@lean(types.void(A, types.int64, A, A))
-def substitute(matrix, n, x, out):
-    """out: the solution by Cholesky's factor."""
-    for i in range(n):
-        row, total = matrix[n * i : n * i + n], x[i]
-        for k in range(i):
-            total -= row[k] * out[k]
-        out[i] = total / row[i]
-    for i in range(n - 1, -1, -1):
-        row = matrix[n * i : n * i + n]
-        out[i] /= row[i]
-        for k in range(i):
-            out[k] -= row[k] * out[i]

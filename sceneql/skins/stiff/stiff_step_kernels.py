@@ -5,10 +5,10 @@ Where closed lines of springs are stiff, their tensions T are unknowns of each s
 X = X* + a J u, u - a P L u = P (u* + a S E T), T = T0 + k (l(X)/l0 - 1), with X*, u* what is known, E the pulls of
 sides at their ends, and S and J what spreads and reads at the latest X. Newton's updates solve
 (l0/k - a^2 E' J G S E) dT = l - l0 - (T - T0) l0/k, where G is one solve of viscosity, by conjugate gradients; their
-preconditioner is Cholesky's factor of that matrix as it was, found anew where they have become slow. No residual is a
-stiffness times a length, so that errors of lengths do not become forces; between steps the tensions go on, and vertices
-that are moved to keep an area do not change them. Source: Ceniceros, Fisher & Roma (2009), J. Comput. Phys. 228,
-7137-7158, for implicit skins.
+preconditioner is Cholesky's factor of that matrix as it was (stiff_matrix_kernels), found anew for each step and where
+they have become slow. No residual is a stiffness times a length, so that errors of lengths do not become forces;
+between steps the tensions go on, and vertices that are moved to keep an area do not change them. Source: Ceniceros,
+Fisher & Roma (2009), J. Comput. Phys. 228, 7137-7158, for implicit skins.
 
 ``numbers``: as there, then the integers of lines (stiff_lines_kernels), and where these begin.
 """
@@ -45,7 +45,6 @@ from sceneql.skins.stiff.stiff_lines_kernels import (
     apart,
     by_law,
     directions,
-    factor,
     hand_over,
     hold,
     lengthened,
@@ -53,19 +52,43 @@ from sceneql.skins.stiff.stiff_lines_kernels import (
     move,
     pull,
     read,
+)
+from sceneql.skins.stiff.stiff_matrix_kernels import (
+    MATRIX_ROOM,
+    PAIRS,
+    by_one_answer,
+    factor,
+    poke,
     substitute,
 )
 from sceneql.system.signatures_kernels import STEP, A, F, I
 
-MOST, CLOSE = 30, 1e-5
-"""Newton's updates of a stage; what may be left, in parts of sides."""
-SEARCHES, ENOUGH, FEW = 40, 0.03, 4
+MOST, CLOSE, FAR = 30, 1e-5, 10.0
+"""Newton's updates of a stage; what may be left, in parts of sides, and what is left of those that lead nowhere."""
+SEARCHES, ENOUGH, FEW = 40, 0.03, 3
 """Iterations for an update, and what they leave; more than so many wear the preconditioner out."""
-HAS, WORN, BEGIN, BEGUN, STATE = range(5)
+BAD, QUICK = 12, 0.02
+"""Iterations with a factor just found by the answer to one force, beyond which that is poor; the time it takes, in
+parts of that by the answer to each tension."""
+HAS, WORN, BEGIN, BEGUN, POOR, ROOM = range(6)
+STATE = ROOM + 2 * PAIRS
 """Of what goes on between steps: 1 where there is a factor; iterations beyond FEW since it was found; the start of the
-latest step [s]; 1 after a step has begun."""
-ROWS = 15
+latest step [s]; 1 after a step has begun; 1 where the answer to one force makes a poor factor."""
+ROWS = 15 + MATRIX_ROOM
 """Numbers a side besides the matrix."""
+
+
+@lean(types.boolean(F, A, A, A, A, A, I), inner=True)
+def give_way(a, source, answer, room, floats, tables, numbers):
+    """answer: the velocities that a fluid has after a time a, by the change of velocities ``source``."""
+    one = numbers[numbers[FLOW_AT] :]
+    solved = project(source, CHANGE, floats, one)
+    for k in range(one[AT], one[AT] + one[FACES]):
+        answer[k] = source[k]
+    for number in range(numbers[AXES]):
+        op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
+        solved &= solve(op, a, source, answer, FINE, floats, tables, floats[one[WORK] :], room)
+    return solved and project(answer, CHANGE, floats, one)
 
 
 @lean(types.boolean(F, A, A, A, A, A, A, A, A, A, A, I, I), inner=True)
@@ -73,18 +96,42 @@ def reply(a, tensions, along, y, source, answer, speeds, longer, room, floats, t
     """How fast vertices at places in y would move by tensions that act for a time a, and sides become longer."""
     one = numbers[numbers[FLOW_AT] :]
     for k in range(one[AT], one[AT] + one[FACES]):
-        source[k] = answer[k] = 0.0
+        source[k] = 0.0
     pull(tensions, along, a, y, source, floats, lines, one)
-    solved = project(source, CHANGE, floats, one)
-    for k in range(one[AT], one[AT] + one[FACES]):
-        answer[k] = source[k]
-    for number in range(numbers[AXES]):
-        op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
-        solved &= solve(op, a, source, answer, FINE, floats, tables, floats[one[WORK] :], room)
-    solved &= project(answer, CHANGE, floats, one)
+    solved = give_way(a, source, answer, room, floats, tables, numbers)
     read(answer, y, speeds, floats, lines, one)
     lengthened(speeds, along, longer, lines)
     return solved
+
+
+@lean(types.boolean(F, A, A, A, A, A, A, A, A, A, A, A, A, A, A, A, I, I), inner=True)
+def precondition(
+    a, along, y, soft, unit, longer, speeds, matrix, source, answer, room, more, beside, state, floats, tables, numbers,
+    lines,
+):  # fmt: skip
+    """Cholesky's factor of the matrix of a stage, by the answer to one force, or where that is poor to each tension."""
+    one, sides, n = numbers[numbers[FLOW_AT] :], lines[SIDES], y.size
+    solved = True
+    if state[POOR] == 0.0:
+        for component in range(2):
+            poke(component, a, source, floats, lines, one)
+            found = more[component * n : (component + 1) * n]
+            solved &= give_way(a, source, found, room, floats, tables, numbers)
+        solved &= by_one_answer(
+            a, along, y, soft, more[:n], more[n : 2 * n], beside, state[ROOM:], matrix, floats, lines, one
+        )  # fmt: skip
+        if solved and factor(matrix, sides):
+            state[HAS], state[WORN] = 1.0, 0.0
+            return True
+        state[POOR] = 1.0
+    for s in range(sides):
+        for r in range(sides):
+            unit[r] = 1.0 if r == s else 0.0
+        solved &= reply(a, unit, along, y, source, answer, speeds, longer, room, floats, tables, numbers, lines)
+        for r in range(sides):
+            matrix[sides * s + r] = (soft[s] if r == s else 0.0) - a * longer[r]
+    state[HAS], state[WORN] = 1.0, 0.0
+    return solved and factor(matrix, sides)
 
 
 @lean(types.boolean(F, F, F, A, A, A, A, A, A, A, A, I, I), inner=True)
@@ -112,21 +159,19 @@ def by_tensions(a, exact, rounded, wanted, y, room, more, skins, state, floats, 
         read(y, y, speeds, floats, lines, one)
         move(speeds, a, wanted, answer, lines)
         most = max(missing(answer, tensions, soft, left, floats, lines), apart(y, answer, floats, lines))
-        if not math.isfinite(most):
+        if not most < FAR:
             return False
         if turn > 0 and most < CLOSE:
             move(speeds, a, wanted, y, lines)
             return True
-        if state[HAS] == 0.0:
-            for s in range(sides):
-                for r in range(sides):
-                    change[r] = 1.0 if r == s else 0.0
-                solved &= reply(a, change, along, y, source, answer, moved, q, room, floats, tables, numbers, lines)
-                for r in range(sides):
-                    matrix[sides * s + r] = (soft[s] if r == s else 0.0) - a * q[r]
-            if not (solved and factor(matrix, sides)):
+        fresh = state[HAS] == 0.0
+        if fresh:
+            solved = precondition(
+                a, along, y, soft, change, q, moved, matrix, source, answer, room, more, skins[15 * sides :], state,
+                floats, tables, numbers, lines,
+            )  # fmt: skip
+            if not solved:
                 return False
-            state[HAS], state[WORN] = 1.0, 0.0
             move(speeds, a, wanted, answer, lines)
         for s in range(2 * sides):
             moved[s] = 0.0
@@ -151,7 +196,9 @@ def by_tensions(a, exact, rounded, wanted, y, room, more, skins, state, floats, 
             for s in range(sides):
                 p[s] = z[s] + now / before * p[s]
         state[WORN] += max(count - FEW, 0)
-        if state[WORN] > sides or count == SEARCHES:
+        if fresh and count > BAD and state[POOR] == 0.0:
+            state[POOR], state[HAS] = 1.0, 0.0
+        if state[WORN] > (sides if state[POOR] == 1.0 else QUICK * sides) or count == SEARCHES:
             state[HAS] = 0.0
         for s in range(sides):
             tensions[s] += change[s]
@@ -190,6 +237,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     for k in range(sides):
         tensions[k] = at_start[k]
     hold(tensions, floats, lines)
+    if state[POOR] == 0.0:  # vertices have moved on: the factor takes less time than iterations with the one before
+        state[HAS] = 0.0
     for i in range(s):
         own, mine = explicit[i * n : (i + 1) * n], damped[i * n : (i + 1) * n]
         if i == 0:
