@@ -10,6 +10,8 @@ from scipy.spatial.transform import Rotation
 import runs
 from sceneql.pipeline import load
 from sceneql.report.explain import explain, text
+from sceneql.run.run import Run
+from sceneql.run.watch import Watch
 
 watch = partial(runs.watch, pruned=False)
 SOLVERS = ["auto", "verlet: {step: 5 ms}", "rk4: {step: 20 ms}"]
@@ -526,3 +528,46 @@ solvers: {main: {verlet: {step: 5 ms}}}
         assert (broken, effort) == (1, 0)
         assert not force.any()
     np.testing.assert_allclose(rows[1][2] - rows[0][2], [0, -0.2 * 9.81, 0], atol=1e-9)
+
+
+def test_motor_friction_and_stop_of_a_slider_act_as_exactly_as_the_tolerance_says(tmp_path):
+    script = """
+clock: {end: 4 s}
+models: {a: {rigid: {mass: 2 kg, inertia: 1 1 1 kg*m^2}}}
+ties:
+  u:
+    slider:
+      between: [a, world]
+      axis: 1 0 0
+      stiffness: 3 N/m
+      friction: 1 N
+      limits: -1 0.8 m
+      restitution: 0.5
+      motor: {speed: 1 m/s, force: 4 N}
+solvers: {main: {dop853: {tolerance: 1e-10}}}
+"""
+    # 3 N move it up to 1 m/s; at that speed it comes to the stop, which throws it back at 0.5 m/s, against 5 N.
+    w = np.sqrt(1.5)
+    began = np.arcsin(1 / w) / w
+    struck = began + 0.8 - (1 - np.cos(w * began))
+    s = 0.2 * w
+    shift = 5 / 3 + (0.8 - 5 / 3) * np.cos(s) - 0.5 / w * np.sin(s)
+    rows = watch(tmp_path, script, [0.5 * (began + struck), struck + 0.2, 4], "u.shift", "u.speed", "u.effort")
+    np.testing.assert_allclose(rows[0][:2], [0.8 - 0.5 * (struck - began), 1], atol=1e-9)
+    np.testing.assert_allclose(rows[1], [shift, 13 / 15 * w * np.sin(s) - 0.5 * np.cos(s), 5], atol=1e-9)
+    np.testing.assert_allclose(rows[2], [0.8, 0, 2.4], atol=1e-9)
+
+
+def test_what_rests_at_a_stop_at_the_end_is_not_told_to_have_gained_energy(tmp_path):
+    script = """
+clock: {end: 2 s, fps: 1}
+models: {a: {rigid: {mass: 2 kg, inertia: 1 1 1 kg*m^2}}}
+ties: {u: {slider: {between: [a, world], limits: -1 0.8 m, friction: 1 N, stiffness: 3 N/m, motor: {force: 4 N}}}}
+solvers: {main: {rk4: {step: 1 ms}}}
+"""
+    (tmp_path / "scene.yaml").write_text(script)
+    run = Run(load(tmp_path / "scene.yaml", pruned=False))
+    watched = Watch(run)
+    for time in (0, 2):
+        watched.look(run.at(time), last=time == 2)
+    assert watched.warnings() == ()

@@ -38,7 +38,9 @@ def drives_of(
     found: list[list[float]] = []
     ints: list[list[int]] = []
     numbers = assembly.numbers()
-    driven = [(tie, tie.drive) for tie in assembly.ties if tie.drive and any(moves(one, assembly) for one in tie.movers)]
+    driven = [
+        (tie, tie.drive) for tie in assembly.ties if tie.drive and any(moves(one, assembly) for one in tie.movers)
+    ]
     rates = [_rates(tie, drive, assembly) for tie, drive in driven]  # raises before anything is added
     for (tie, drive), rate in zip(driven, rates, strict=True):
         own = [0.0] * DRIVEN
