@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from sceneql.flows.layout import LED, PLAN
-from sceneql.flows.schemes.operator_layout import ODD
+from sceneql.flows.schemes.operator_layout import ODD, TALLY
 from sceneql.system import Control, Method, Needs, Prepared, Stepper
 from sceneql.system.stepping import UNREAD
 
@@ -178,8 +178,9 @@ def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, st
     fields = [*velocities, *(grid for grid in fixed if _spreads(grid, system.floats))]
     tables = Tables()
     found = [operator(grid, system.floats, tables, grid not in velocities) for grid in fields]
-    if flow.ints[LED] > 0:  # solids move
-        for one in found:
+    for one in found:
+        # Solids that move; and amounts, of which transforms may leave less than nothing by rounding.
+        if flow.ints[LED] > 0 or one[TALLY] >= 0:
             one[ODD] = -1
     left = len(grids) - len(fixed)
     text = "advection explicit, viscosity and diffusion implicit by conjugate gradients, then a projection"
