@@ -76,6 +76,21 @@ def test_joints_stay_closed_whatever_the_errors_are(tmp_path, solver):
         assert np.abs(row[4] - row[5]).max() < 1e-12
 
 
+def test_a_method_of_many_short_steps_closes_joints_in_few_of_them_and_on_every_frame(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(RODS.replace("SOLVER", "adams: {tolerance: 1e-10}"))
+    run = Run(load(path, pruned=False))
+    march, open_between = run.islands[0].march, 0
+    for moment in run.moments(np.linspace(0, 2, 200)):
+        assert np.abs(moment.read("rods", "a.start.position")).max() < 1e-13
+        end = march.stopped().y
+        opened = np.abs(end - march._settled(march.time, end)).max()
+        assert opened < 1e-9
+        open_between += opened > 1e-15
+    assert open_between > 100
+    assert march.statistics.evaluations == 2 * march.statistics.steps + march.statistics.rejected
+
+
 def test_the_force_of_a_hinge_is_what_the_bodies_weigh_and_pull(tmp_path):
     ((force, speed, acceleration, other),) = watch(
         tmp_path,

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from sceneql.island.system import System
 
 KERNELS = "sceneql.words.solvers.adams_kernels"
+SETTLES = 8
+"""Number of steps after which joints are closed, which costs as much as a step; in so few they open by no more than the
+errors of the steps. Samples have them closed anyway."""
 
 
 class Adams(Solver):
@@ -42,7 +45,7 @@ class Adams(Solver):
     def stepper(self) -> Stepper:
         """Steps by the error, with the integral of the formula's polynomial as dense output."""
         return Stepper(
-            Method(step=f"{KERNELS}:step", order=self.order, dense=f"{KERNELS}:dense"),
+            Method(step=f"{KERNELS}:step", order=self.order, dense=f"{KERNELS}:dense", settles=SETTLES),
             Control(
                 first_step=self.first_step or 0.0,
                 adaptive=True,

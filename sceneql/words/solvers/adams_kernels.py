@@ -39,7 +39,7 @@ errors of the ends (compensated summation, Kahan 1965)."""
 
 AIM = 0.3
 """Error of the next step that its length is chosen for."""
-GROWTH, MOST_GROWTH = 1.1, 2.0
+GROWTH, MOST_GROWTH = 1.05, 2.0
 """Factor below which steps do not grow, as changes of length cost accuracy; largest factor."""
 LOW_ORDER_AT = 3
 """Failed tries of a step after which it begins anew with order 2: the rate has jumped."""
@@ -172,9 +172,10 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     k = begin(t, y0, rate0, work, vectors, floats[channels.SETTLED] != 0.0)
     work[TRIED] = h
     all_known = work[KNOWN] >= k
-    work[BETAS] = 1.0
+    beta = work[BETAS] = 1.0
     for j in range(1, k + all_known):
-        work[BETAS + j] = work[BETAS + j - 1] * (h + work[GAPS + j - 1]) / work[GAPS + j]
+        beta *= (h + work[GAPS + j - 1]) / work[GAPS + j]
+        work[BETAS + j] = beta
     integrate(1.0, h, k + 1, work)
     weights, betas = work[WEIGHTS:], work[BETAS:]
     slope, last = vectors[SLOPE * n : (SLOPE + 1) * n], vectors[LAST * n : (LAST + 1) * n]
