@@ -144,7 +144,7 @@ def test_what_is_wrong_in_a_file_is_told(tmp_path, text):
 )
 def test_a_file_of_another_kind_is_told_with_what_to_do(tmp_path, name, remedy):
     (tmp_path / name).write_text("# vtk DataFile Version 2.0\n")
-    with pytest.raises(ScriptError, match="is no .msh") as told:
+    with pytest.raises(ScriptError, match=r"is no \.msh") as told:
         watch(tmp_path, f"models: {{body: {{elastic: {{file: {name}, {LAW}}}}}}}\n", [0.0], "body.energy")
     assert remedy in told.value.diagnostics[0].help
 
