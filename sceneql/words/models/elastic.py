@@ -17,7 +17,7 @@ from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.hold import Hold
 from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws, number
 from sceneql.bodies.elements.load import Load
-from sceneql.bodies.elements.said import SAID
+from sceneql.bodies.elements.named import SAID
 from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
 from sceneql.bodies.filling.block import Block
 from sceneql.bodies.filling.finer import Finer
