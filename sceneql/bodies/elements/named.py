@@ -1,4 +1,4 @@
-"""Discovery of elements and laws: each file of a folder that defines the class of its own name."""
+"""Discovery of elements and laws, each in the file that defines the class of its own name; fields that solids lack."""
 
 from __future__ import annotations
 
