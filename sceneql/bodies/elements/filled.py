@@ -154,7 +154,7 @@ def of_file(
     except Exceeds as error:
         raise LimitRefused(str(error), line, "take fewer elements") from None
     except (ValueError, OSError) as error:
-        raise ScriptError([Diagnostic("not-filled", str(error), line)]) from None
+        raise ScriptError([Diagnostic("not-filled", str(error), line, _instead(path))]) from None
     if read.cells.shape[1] == 4 or finer or not element.edges:
         used, which = np.unique(read.cells[:, :4], return_inverse=True)
         points, tetrahedra = read.points[used], which.reshape(-1, 4).astype(np.int32)
@@ -179,6 +179,15 @@ def of_file(
         straight = meshed(element, cut.points, cut.cells)
         mesh = replace(straight, points=bent(mesh, straight.points, straight.cells, cut.parents))
     return lines.marked(cut, mesh)
+
+
+def _instead(path: Path) -> str:
+    """What to write or save in place of a file of another kind; "" for a .msh."""
+    if path.suffix.lower() in (".stl", ".obj", ".ply"):
+        return f"a surface is filled as an object: `mesh: {{file: {path.name}}}` under objects, and `of` it a `spacing`"
+    if path.suffix.lower() != ".msh":
+        return f"save it as a .msh in text, as by Gmsh: `gmsh -0 {path.name} -format msh2 -o {path.stem}.msh`"
+    return ""
 
 
 def _upright(points: Floats, cells: Ints, read: Read, name: str, line: Span | None) -> None:
