@@ -80,6 +80,7 @@ class March:
         self._counts = np.zeros(kernels.COUNTS, dtype=np.int64)
         self._counts[kernels.LOCAL] = bool(system.structure.local)
         self._counts[kernels.ACTS] = bool(system.structure.after)
+        self._counts[kernels.SETTLES] = bool(system.structure.settling)
         self._counts[kernels.PENDING] = -1
         self._clock[kernels.ERROR] = 1e-4
         self._clock[kernels.LARGEST] = min(stepper.control.largest_step, system.largest_step)
