@@ -134,7 +134,7 @@ def of_file(file: str, element: type[Element], finer: Mapping[str, Finer], assem
     except Exceeds as error:
         raise LimitRefused(str(error), line, "take fewer elements") from None
     except (ValueError, OSError) as error:
-        raise ScriptError([Diagnostic("not-filled", str(error), line)]) from None
+        raise ScriptError([Diagnostic("not-filled", str(error), line, _instead(path))]) from None
     if read.cells.shape[1] == 4 or finer or not element.edges:
         used, which = np.unique(read.cells[:, :4], return_inverse=True)
         points, tetrahedra = read.points[used], which.reshape(-1, 4).astype(np.int32)
@@ -152,6 +152,15 @@ def of_file(file: str, element: type[Element], finer: Mapping[str, Finer], assem
     places = np.concatenate([np.eye(4), np.asarray(element.rule[0])])
     _told(mesh.sizes(places).min(axis=1), mesh.points[mesh.cells[:, :4]], read, path.name, line)
     return mesh
+
+
+def _instead(path: Path) -> str:
+    """What to write or save in place of a file of another kind; "" for a .msh."""
+    if path.suffix.lower() in (".stl", ".obj", ".ply"):
+        return f"a surface is filled as an object: `mesh: {{file: {path.name}}}` under objects, and `of` it a `spacing`"
+    if path.suffix.lower() != ".msh":
+        return f"save it as a .msh in text, as by Gmsh: `gmsh -0 {path.name} -format msh2 -o {path.stem}.msh`"
+    return ""
 
 
 def _upright(points: Floats, cells: Ints, read: Read, name: str, line: Span | None) -> None:

@@ -17,6 +17,7 @@ from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.hold import Hold
 from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws, number
 from sceneql.bodies.elements.load import Load
+from sceneql.bodies.elements.named import SAID
 from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
 from sceneql.bodies.filling.block import Block
 from sceneql.bodies.filling.finer import Finer
@@ -80,13 +81,7 @@ class Elastic(Resized, Model):
     """
 
     gives: ClassVar[Mapping[str, Gives]] = {**masses.BODY_OUTPUTS, **OUTPUTS, **solid_modes.OUTPUTS}
-    said_by: ClassVar[Mapping[str, str]] = {
-        **dict.fromkeys(
-            ("modulus", "young", "youngs_modulus", "stiffness", "poisson", "poisson_ratio"),
-            "a law has it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`",
-        ),
-        **dict.fromkeys(("mass", "weight"), "write its density, `density: 1000 kg/m^3`"),
-    }
+    said_by: ClassVar[Mapping[str, str]] = SAID
     has_skin: ClassVar[bool] = True
 
     of: kinds.ObjectRef | None = field(
