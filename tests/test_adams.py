@@ -48,7 +48,7 @@ def test_growth_is_what_a_step_does_to_the_linear_equation(order, rate):
 def test_a_decay_and_an_oscillation_are_stable_up_to_what_the_textbooks_say():
     # Orders 2 and 3 of PECE with local extrapolation: 2 and 2.4 on the real axis, 0 and 1.2 on the imaginary one.
     assert growth(np.array([-1.999 + 0j]), 1) < 1 < growth(np.array([-2.001 + 0j]), 1)
-    assert growth(np.array([-2.39 + 0j]), 12) < 1 < growth(np.array([-2.41 + 0j]), 12)
+    assert growth(np.array([-2.39 + 0j]), 11) < 1 < growth(np.array([-2.41 + 0j]), 11)
     assert growth(np.array([1.19j]), 12) < 1 + 1e-8 < growth(np.array([1.21j]), 12)
 
 
@@ -76,7 +76,7 @@ def test_it_takes_half_the_evaluations_of_dop853_at_equal_error():
     exact = exact_at(20.0)
     curves = []
     for kind in (Adams, Dop853):
-        runs = [marched(PENDULUM, kind(tolerance=tolerance), 20.0) for tolerance in 10.0 ** -np.arange(6.0, 13.0)]
+        runs = [marched(PENDULUM, kind(tolerance=tolerance), 20.0) for tolerance in 10.0 ** -np.arange(6.0, 13.0, 0.25)]
         off = [math.log(np.abs(y - exact).max()) for y, _ in runs]
         line = np.polyfit(off, [math.log(done.evaluations) for _, done in runs], 2)
         curves.append(math.exp(np.polyval(line, math.log(1e-9))))

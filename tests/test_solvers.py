@@ -50,7 +50,7 @@ CLAIMED = {
     "blanes_moan": 4,
     "dop853": 8,
     "gauss_radau15": 15,
-    "adams": 13,
+    "adams": 12,
     "euler": 1,
     "semi_implicit_euler": 1,
     "midpoint": 2,

@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from sceneql.island.system import System
 
 KERNELS = "sceneql.words.solvers.adams_kernels"
-SETTLES = 8
+SETTLES = 16
 """Number of steps after which joints are closed, which costs as much as a step; in so few they open by no more than the
 errors of the steps. Samples have them closed anyway."""
 
 
 class Adams(Solver):
-    """Adams' multistep formulas of orders 2 to 13: two evaluations of the rate a step, whatever the order.
+    """Adams' multistep formulas of orders 2 to 12: two evaluations of the rate a step, whatever the order.
 
     A polynomial through the rates of the latest steps predicts the end (Bashforth), and with the rate there corrects it
     (Moulton); then the rate is evaluated again (PECE). Steps of any length and order follow the error, which is held
@@ -34,7 +34,7 @@ class Adams(Solver):
     absolute: FixedScalar | None = field(
         "Absolute error of a step, in SI units; by default the number of the relative.", None, above=0
     )
-    order: int = field("The highest order that steps may have.", 13, at_least=2, at_most=13)
+    order: int = field("The highest order that steps may have: stability falls with it.", 12, at_least=2, at_most=13)
     first_step: FixedTime | None = field("Length of the first step; by default it is chosen.", None, above=0)
     largest_step: FixedTime | None = field("Longest step allowed.", None, above=0)
 
