@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -197,7 +198,8 @@ def bench(
 
     graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
     with bar(graph.name) as progress:
-        report = measure(graph, output, words, how["error"], progress, how["solvers"])
+        say = partial(click.echo, err=True)
+        report = measure(graph, output, words, how["error"], progress, how["solvers"], say)
     click.echo(report)
 
 

@@ -80,10 +80,7 @@ class Solid:
 
     def free(self) -> Any:
         """(3 n,) bool: what no hold holds."""
-        held = np.zeros(self.bodies.count * 3, dtype=bool).reshape(-1, 3)
-        for hold in self.kind.hold.values():
-            held[np.ix_(np.flatnonzero(hold.holds(self.mesh.points, None)), hold.axes())] = True
-        return ~held.ravel()
+        return ~np.ravel(self.bodies.skin.held)
 
     def rest(self, places: Any = None, tolerance: float = 1e-10, most: int = 60) -> tuple[Any, int]:
         """Places where all forces are in balance, by Newton's method, and how many steps it took."""

@@ -166,6 +166,19 @@ solvers: {main: {SOLVER}}
     assert setting_of(at(Auto(), 1e-4)) == 1e-4
 
 
+def test_what_auto_makes_of_elastic_solids_is_told(tmp_path):
+    """It said that auto takes its place, and radau where it is stiff."""
+    path = tmp_path / "scene.yaml"
+    path.write_text(
+        "models: {b: {elastic: {block: {size: 1 1 1 m, cells: [1, 1, 1]}, element: p1, "
+        "law: {linear: {modulus: 1 kPa, poisson: 0.3}}}}}\nsolvers: {main: auto}\n"
+        "outputs: {table: {record: {of: [b.energy]}}}\n"
+    )
+    (island,) = explain(load(path))["islands"]
+    assert "elastic solids at a tolerance of 0.0001, by tr_bdf2, not radau, where they are stiff" in island["why"]
+    assert "takes its place" not in island["why"]
+
+
 def test_a_cloth_that_lands_leaves_the_stiff_method_to_few_steps(tmp_path):
     """Landings cut steps of radau to 1e-7 s, and modes of contacts passed for explicit steps that it replaced: the
     cloth took fifty times what dopri5 takes by name."""

@@ -11,7 +11,6 @@ import pytest
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.pipeline import load
 from sceneql.report import bench_methods
-from sceneql.report.bench import bench
 from sceneql.report.bench_grids import grid_section
 from sceneql.report.bench_schemes import front, scheme_runs
 from sceneql.report.grid_ends import difference, ends_on_grids
@@ -107,28 +106,6 @@ def test_the_section_is_written(tmp_path, monkeypatch):
     finest = {row["method"]: float(row["error"]) for row in methods}  # the last of each stays
     assert finest["p2"] < 0.5 * finest["cells"], "with sides of twice the length: the finest is what all are beside"
     assert {row["linear"] for row in csv.DictReader(section.files[2].read_text().splitlines())} >= {"multigrid", "sor"}
-
-
-def test_elements_of_a_solid_are_compared_over_spacings_and_rests_take_no_steps(tmp_path, monkeypatch):
-    """Displacements by p1 and p2 beside the finest p2; a bench of `equilibrium` ends (it once ran without an end)."""
-    monkeypatch.setattr(bench_methods, "SOLID_LEVELS", (1.0, 0.7, 0.5))
-    monkeypatch.setattr(bench_methods, "REPEATS", 1)
-    path = tmp_path / "beam.yaml"
-    path.write_text(
-        "clock: {end: 1 s, fps: 1}\nmodels: {beam: {elastic: {block: {size: 0.4 0.1 0.1 m, cells: [4, 1, 1]}, "
-        "law: {linear: {modulus: 1 MPa, poisson: 0.3}}, hold: {wall: {where: x < -0.199}}, "
-        "loads: {tip: {where: x > 0.199, force: 0 1 0 N}}}}}\nsolvers: {main: equilibrium}\n"
-        "outputs: {table: {record: {of: [beam.positions]}}}\n",
-        encoding="utf-8",
-    )
-    told = bench(load(path), tmp_path / "out")
-    assert "equilibrium finds rests, and takes no steps" in told
-    assert "beside the finest p2" in told
-    rows = list(csv.DictReader((tmp_path / "out.methods.csv").read_text().splitlines()))
-    errors = {name: [float(row["error"]) for row in rows if row["method"] == name] for name in ("p1", "p2")}
-    assert errors["p1"] == sorted(errors["p1"], reverse=True)
-    assert errors["p2"][1] < errors["p2"][0]
-    assert errors["p2"][1] < 0.1 * errors["p1"][1]
 
 
 def test_a_scene_without_fields_has_no_section(tmp_path):

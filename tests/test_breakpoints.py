@@ -17,6 +17,7 @@ from sceneql.run.run import Run
 G = 9.81
 TIME = Symbol("time", Type())
 ADAPTIVE = ["auto", "{dopri5: {}}", "{dop853: {}}", "{gauss_radau15: {}}", "{radau: {}}", "{rodas5p: {}}"]
+ADAPTIVE += ["{adams: {}}"]
 
 
 def number(value):
@@ -197,7 +198,7 @@ solvers: {{main: {solver}}}
     assert v[0] == pytest.approx(expected, rel=1e-5)
 
 
-@pytest.mark.parametrize("solver", ["auto", "{dopri5: {}}", "{dop853: {}}", "{gauss_radau15: {}}"])
+@pytest.mark.parametrize("solver", ["auto", "{dopri5: {}}", "{dop853: {}}", "{gauss_radau15: {}}", "{adams: {}}"])
 def test_a_short_ramp_up_and_down_is_felt(tmp_path, solver):
     script = f"""
 models: {{p: {{particles: {{list: {{a: {{position: 0 0 0}}}}}}}}}}

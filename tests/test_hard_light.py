@@ -11,6 +11,7 @@ import pytest
 import stage
 from renderers.trace import Trace
 from renderers.tracing import draw as drawing
+from renderers.tracing import waves
 from renderers.tracing.filter.hard_kernels import is_hard
 from renderers.tracing.pack import pack
 from sceneql.frame import PointLight, Sky, Surface, View
@@ -129,3 +130,25 @@ def test_hard_shadows_are_those_of_the_filter_also_in_mirrors_and_with_any_numbe
     monkeypatch.setattr(drawing, "is_hard", lambda scene: False)
     filtered = draw(*shapes, lights=lights, seen=seen, samples=samples)
     assert (abs(filtered - pictures[0]) > 1e-5).mean() < 2e-3
+
+
+@pytest.mark.parametrize("plane", [False, True])
+@pytest.mark.parametrize("threads", ["1", "3"])
+def test_bands_that_are_gathered_in_one_call_are_those_of_waves_led_from_python(plane, threads, monkeypatch):
+    shapes = stage.blob(WHITE, (-0.2, 0.6, 0.3)), *([stage.floor()] if plane else ())
+    lights = sun((1, 1, 0.4)), PointLight((-2.0, 4.0, 1.0), (3.0,) * 3, 0.0)
+    seen = view((1, 3, 8), (0, 0.7, 0), size=(100, 70), half_height=2.0)
+    monkeypatch.setenv("SCENEQL_THREADS", threads)
+    calls = []
+    gatherer = waves.bands_gatherer
+
+    def counted(*own):
+        inner = gatherer(*own)
+        return lambda *band: calls.append(band[:2]) or inner(*band)
+
+    monkeypatch.setattr(waves, "bands_gatherer", counted)
+    whole = draw(*shapes, lights=lights, seen=seen, samples=1)
+    assert {row for band in calls for row in range(*band)} == set(range(70))
+    monkeypatch.setattr(waves, "bands_gatherer", lambda *own: None)
+    np.testing.assert_array_equal(whole, draw(*shapes, lights=lights, seen=seen, samples=1))
+    assert (whole > 0).mean() > 0.04

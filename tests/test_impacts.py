@@ -11,6 +11,7 @@ from islands import TETHER, balls, simple
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.island.island import IslandAssembly
 from sceneql.march.march import March
+from sceneql.words.solvers.adams import Adams
 from sceneql.words.solvers.blanes_moan import BlanesMoan
 from sceneql.words.solvers.dop853 import Dop853
 from sceneql.words.solvers.dopri5 import Dopri5
@@ -20,7 +21,7 @@ from sceneql.words.solvers.rk4 import Rk4
 from sceneql.words.solvers.verlet import Verlet
 
 BOUNCERS = [Rk4(step=1e-3).stepper(), Rk4(step=1 / 60).stepper(), Dopri5().stepper()]
-BOUNCERS += [kind.stepper() for kind in (Heun(), Verlet(), BlanesMoan(step=1 / 60), Dop853(), GaussRadau15())]
+BOUNCERS += [kind.stepper() for kind in (Heun(), Verlet(), BlanesMoan(step=1 / 60), Dop853(), GaussRadau15(), Adams())]
 
 
 @pytest.mark.parametrize("stepper", BOUNCERS)

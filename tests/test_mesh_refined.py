@@ -1,5 +1,6 @@
 """Laws of refined cells: closed beside coarse ones, and honest about what they do not resolve."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -21,11 +22,25 @@ from meshes import (
 from sceneql.field.tape.tape_solid import field_gradients, field_values
 from sceneql.mesh.bounded import bounded
 from sceneql.mesh.cubes.grid import grid_around
+from sceneql.mesh.cubes.grid_extraction import Found, GridExtraction
+from sceneql.mesh.cubes.kept_blocks import KeptBlocks
 from sceneql.mesh.cubes.polygonise import polygonise
 from sceneql.mesh.cubes.unresolved import unresolved
 from sceneql.mesh.measures import euler_characteristic, volume
 from sceneql.mesh.repair import move_vertices
 from sceneql.mesh.repair.folds import overturned
+
+
+def test_blocks_asked_for_later_hold_what_they_hold_at_once():
+    low, high = (-3.0,) * 3, (3.0,) * 3
+    shop = GridExtraction(bounded(tape_of(TANGLECUBE), low, high), grid_around(low, high, 0.125))
+    blocks, kept = shop.met(), KeptBlocks(shop)
+    kept.extracted(blocks[::3].copy())
+    kept.extracted(blocks[::2].copy())
+    wanted = blocks[::-1].copy()
+    later, once = kept.extracted(wanted), shop.extracted(wanted)
+    for field in dataclasses.fields(Found):
+        assert np.array_equal(getattr(later, field.name), getattr(once, field.name)), field.name
 
 
 def test_resolved_shapes_hide_next_to_nothing():

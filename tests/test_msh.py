@@ -138,6 +138,17 @@ def test_what_is_wrong_in_a_file_is_told(tmp_path, text):
         watch(tmp_path, script, [0.0], "body.energy")
 
 
+@pytest.mark.parametrize(
+    ("name", "remedy"),
+    [("t.vtk", "gmsh -0 t.vtk -format msh2 -o t.msh"), ("t.stl", "`mesh: {file: t.stl}` under objects")],
+)
+def test_a_file_of_another_kind_is_told_with_what_to_do(tmp_path, name, remedy):
+    (tmp_path / name).write_text("# vtk DataFile Version 2.0\n")
+    with pytest.raises(ScriptError, match=r"is no \.msh") as told:
+        watch(tmp_path, f"models: {{body: {{elastic: {{file: {name}, {LAW}}}}}}}\n", [0.0], "body.energy")
+    assert remedy in told.value.diagnostics[0].help
+
+
 def test_a_file_that_is_not_there_or_has_a_spacing_is_told_at_once(tmp_path):
     film = "outputs: {film: {image: {size: 32 18}}}\n"
     assert "none.msh" in complaint(tmp_path, f"models: {{body: {{elastic: {{file: none.msh, {LAW}}}}}}}\n{film}")

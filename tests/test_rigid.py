@@ -71,6 +71,12 @@ def test_auto_moves_what_flies_freely_exactly(tmp_path, case):
     assert off == 0
 
 
+def test_rotations_of_what_flies_freely_have_length_1_on_every_frame(tmp_path):
+    script = FREE.format(spin=TUMBLE[0], end=50, solver="auto")
+    lengths = [np.sum(q**2) for (q,) in watch(tmp_path, script, np.linspace(0, 50, 400), "top.rotation")]
+    assert np.abs(np.array(lengths) - 1.0).max() < 5e-16
+
+
 def test_a_thrown_body_flies_along_a_parabola_and_turns_as_without_gravity(tmp_path):
     spin, end, expected = TUMBLE
     model = f"{{rigid: {{mass: 1 kg, inertia: 1 2 3 kg*m^2, spin: {spin} rad/s, velocity: 3 90 0 m/s}}}}"

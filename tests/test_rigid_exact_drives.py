@@ -299,7 +299,7 @@ contacts: {touch: {collision: {restitution: 0.3, friction: 0.3}}}
 def test_explain_tells_that_stops_and_motors_are_exact(tmp_path):
     path = tmp_path / "scene.yaml"
     for mode, told in (
-        ("auto", "with the contacts (mode exact)"),
+        ("auto", "by mode exact"),
         ("local", "on the velocities at the end of a step (mode local)"),
     ):
         drive = "limits: -60 10 deg, motor: {speed: 1 rad/s, torque: 1 N*m}"

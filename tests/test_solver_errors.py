@@ -42,7 +42,9 @@ def test_a_state_nineteen_decades_below_another_is_seen(tmp_path, solver, digits
         assert y[1] == pytest.approx(exact, rel=10.0**-digits, abs=0.0)
 
 
-@pytest.mark.parametrize("solver", ["auto", "dopri5", "{dop853: {tolerance: 1e-12}}", "radau", "gauss_radau15"])
+@pytest.mark.parametrize(
+    "solver", ["auto", "dopri5", "{dop853: {tolerance: 1e-12}}", "radau", "gauss_radau15", "adams"]
+)
 def test_an_end_of_the_equations_in_one_of_many_copies_is_told_with_its_copy(tmp_path, solver):
     """x of copy 0 comes first below its bound; that of y is undefined from the first instant in none."""
     run = island(tmp_path, ROOT.replace("ROWS", "{x: '-1 - 0*x^1e-6', y: '-y'}"), solver, 3)

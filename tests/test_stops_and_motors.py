@@ -4,11 +4,14 @@ from functools import partial
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 import runs
 from sceneql.pipeline import load
 from sceneql.report.explain import explain, text
+from sceneql.run.run import Run
+from sceneql.run.watch import Watch
 
 watch = partial(runs.watch, pruned=False)
 SOLVERS = ["auto", "verlet: {step: 5 ms}", "rk4: {step: 20 ms}"]
@@ -28,6 +31,7 @@ def test_a_pendulum_leaves_at_its_stop_what_the_restitution_says(tmp_path, part,
     script = PENDULUM.replace("PART", str(part)).replace("SOLVER", solver)
     rows = watch(tmp_path, script, np.arange(0, 3, 0.01), "u.angle", "a.dissipated", "a.energy")
     whole = 2 * 9.81 * np.sin(np.pi / 3)
+    near = 30 if solver == "auto" else 1  # its tolerance is 1e-6
     lost = [0.0]
     for row in rows:
         if row[1] > lost[-1] + 1e-6 * whole:
@@ -35,12 +39,12 @@ def test_a_pendulum_leaves_at_its_stop_what_the_restitution_says(tmp_path, part,
     # Each impact leaves the square of the restitution; an instant may be within the step of one.
     exact = [whole * (1 - part ** (2 * k)) for k in range(len(lost))]
     if part < 1:
-        assert min(abs(lost[k] - exact[1]) for k in range(len(lost))) < 3e-8 * whole
-        assert lost[-1] == pytest.approx(whole, rel=2e-3 if part else 1e-7)
+        assert min(abs(lost[k] - exact[1]) for k in range(len(lost))) < 3e-8 * near * whole
+        assert lost[-1] == pytest.approx(whole, rel=2e-3 if part else 1e-7 * near)
     else:
         assert abs(rows[-1][1]) < 1e-7 * whole
     assert min(row[0] for row in rows) > -np.pi / 3 - 1e-9
-    assert rows[-1][2] == pytest.approx(0, abs=1e-6 * whole)
+    assert rows[-1][2] == pytest.approx(0, abs=(1e-5 if solver == "auto" else 1e-6) * whole)
 
 
 @pytest.mark.parametrize("step", [1, 5, 20])
@@ -109,9 +113,9 @@ def test_a_motor_goes_to_an_angle_and_holds_it_against_a_load(tmp_path, solver):
     rows = watch(tmp_path, script, [0.1, 3, 4], "u.angle", "u.speed", "u.effort")
     assert rows[0][1] == pytest.approx(0.1 * (5 - 1) / 0.25, abs=1e-9)
     for angle, speed, effort in rows[1:]:
-        assert angle == pytest.approx(np.pi / 2, abs=1e-9)
-        assert abs(speed) < 1e-8
-        assert effort == pytest.approx(1, abs=1e-7)
+        assert angle == pytest.approx(np.pi / 2, abs=1e-7 if solver == "auto" else 1e-9)
+        assert abs(speed) < (1e-6 if solver == "auto" else 1e-8)
+        assert effort == pytest.approx(1, abs=1e-6 if solver == "auto" else 1e-7)
 
 
 def test_a_motor_follows_an_angle_in_time(tmp_path):
@@ -135,7 +139,8 @@ def test_what_a_motor_gives_is_the_energy_that_the_body_has_and_hands_on(tmp_pat
     script = MOTOR.replace("SOLVER", solver).replace("MOTOR", "speed: 2 rad/s, torque: 5 N*m").replace("LOAD", "-1")
     times = [4] if solver == "auto" else [0.1, 1, 4]  # where steps end
     for given, angle, kinetic in watch(tmp_path, script, times, "u.given", "u.angle", "a.kinetic"):
-        assert given == pytest.approx(kinetic + angle, abs=1e-8)  # the load takes 1 N m times the angle
+        near = 1e-5 if solver == "auto" else 1e-8  # of its tolerance of 1e-6
+        assert given == pytest.approx(kinetic + angle, abs=near)  # the load takes 1 N m times the angle
     script = MOTOR.replace("SOLVER", "dop853: {tolerance: 1e-11}").replace("LOAD", "0")
     script = script.replace("MOTOR", 'torque: "3 N*m*cos(2*time/(1 s))"')
     ((given,),) = watch(tmp_path, script, [4], "u.given")
@@ -163,11 +168,47 @@ solvers: {main: {dop853: {tolerance: 1e-12}}}
         assert lost + more == pytest.approx(-sum(given), abs=1e-9)
 
 
-def test_explain_tells_where_steps_are_of_order_one(tmp_path):
-    script = PENDULUM.replace("PART", "0").replace("SOLVER", "auto")
+@pytest.mark.parametrize(
+    ("solver", "told"),
+    [
+        ("auto", "by mode exact: their changes are located"),
+        ("rk4: {step: 5 ms}", "on the velocities at the end of a step (mode local), of order 1"),
+    ],
+)
+def test_explain_tells_where_steps_are_of_order_one(tmp_path, solver, told):
+    script = PENDULUM.replace("PART", "0").replace("SOLVER", solver)
     watch(tmp_path, f"{script}outputs: {{table: {{record: {{of: [a.energy]}}}}}}", [0], "u.angle")
     said = text(explain(load(tmp_path / "scene.yaml")))
-    assert "u: stops act on the velocities at the end of a step (mode local), of order 1" in said
+    assert f"u: stops act {told}" in said
+
+
+def test_dry_friction_of_a_swinging_rod_is_as_exact_as_the_tolerance(tmp_path):
+    script = """
+clock: {end: 3 s}
+models: {arm: {rigid: {mass: 1 kg, inertia: 1e-4 0.25 0.25 kg*m^2, position: 1 0 0 m}}}
+forces: [gravity]
+ties: {u: {hinge: {between: [arm, world], at: 0 0 0 m, axis: 0 0 1, friction: 0.6 N*m}}}
+solvers: {main: {dop853: {tolerance: 1e-10}}}
+"""
+    ((angle, speed),) = watch(tmp_path, script, [3], "u.angle", "u.speed")
+    now, state, way = 0.0, [0.0, 0.0], -1.0
+    while now < 3:  # by swings, each with friction of one sign
+
+        def turns(_, y):
+            return y[1]
+
+        turns.terminal, turns.direction = True, -way
+        swing = solve_ivp(
+            lambda _, y, way=way: [y[1], -(9.81 * np.cos(y[0]) + 0.6 * way) / 1.25],
+            (now, 3),
+            state,
+            method="DOP853",
+            rtol=1e-12,
+            atol=1e-13,
+            events=turns,
+        )
+        now, state, way = swing.t[-1], swing.y[:, -1], -way
+    np.testing.assert_allclose([angle, speed], state, atol=1e-8)
 
 
 CRANK = """
@@ -487,3 +528,46 @@ solvers: {main: {verlet: {step: 5 ms}}}
         assert (broken, effort) == (1, 0)
         assert not force.any()
     np.testing.assert_allclose(rows[1][2] - rows[0][2], [0, -0.2 * 9.81, 0], atol=1e-9)
+
+
+def test_motor_friction_and_stop_of_a_slider_act_as_exactly_as_the_tolerance_says(tmp_path):
+    script = """
+clock: {end: 4 s}
+models: {a: {rigid: {mass: 2 kg, inertia: 1 1 1 kg*m^2}}}
+ties:
+  u:
+    slider:
+      between: [a, world]
+      axis: 1 0 0
+      stiffness: 3 N/m
+      friction: 1 N
+      limits: -1 0.8 m
+      restitution: 0.5
+      motor: {speed: 1 m/s, force: 4 N}
+solvers: {main: {dop853: {tolerance: 1e-10}}}
+"""
+    # 3 N move it up to 1 m/s; at that speed it comes to the stop, which throws it back at 0.5 m/s, against 5 N.
+    w = np.sqrt(1.5)
+    began = np.arcsin(1 / w) / w
+    struck = began + 0.8 - (1 - np.cos(w * began))
+    s = 0.2 * w
+    shift = 5 / 3 + (0.8 - 5 / 3) * np.cos(s) - 0.5 / w * np.sin(s)
+    rows = watch(tmp_path, script, [0.5 * (began + struck), struck + 0.2, 4], "u.shift", "u.speed", "u.effort")
+    np.testing.assert_allclose(rows[0][:2], [0.8 - 0.5 * (struck - began), 1], atol=1e-9)
+    np.testing.assert_allclose(rows[1], [shift, 13 / 15 * w * np.sin(s) - 0.5 * np.cos(s), 5], atol=1e-9)
+    np.testing.assert_allclose(rows[2], [0.8, 0, 2.4], atol=1e-9)
+
+
+def test_what_rests_at_a_stop_at_the_end_is_not_told_to_have_gained_energy(tmp_path):
+    script = """
+clock: {end: 2 s, fps: 1}
+models: {a: {rigid: {mass: 2 kg, inertia: 1 1 1 kg*m^2}}}
+ties: {u: {slider: {between: [a, world], limits: -1 0.8 m, friction: 1 N, stiffness: 3 N/m, motor: {force: 4 N}}}}
+solvers: {main: {rk4: {step: 1 ms}}}
+"""
+    (tmp_path / "scene.yaml").write_text(script)
+    run = Run(load(tmp_path / "scene.yaml", pruned=False))
+    watched = Watch(run)
+    for time in (0, 2):
+        watched.look(run.at(time), last=time == 2)
+    assert watched.warnings() == ()

@@ -47,6 +47,7 @@ def swung(folder, solver, *more):
     [
         ("dop853: {tolerance: 1e-12}", 1e-9),
         ("gauss_radau15", 1e-9),
+        ("adams: {tolerance: 1e-12}", 1e-9),
         ("radau: {tolerance: 1e-9}", 1e-8),
         ("rodas5p: {tolerance: 1e-7}", 1e-4),
         ("auto", 1e-5),
@@ -64,7 +65,7 @@ def test_methods_keep_their_order_on_ties(tmp_path, word, order):
     assert np.log2(coarse / fine) == pytest.approx(order, abs=0.45)
 
 
-@pytest.mark.parametrize("solver", ["dop853: {tolerance: 1e-6}", "rk4: {step: 10 ms}", "verlet: {step: 10 ms}"])
+@pytest.mark.parametrize("solver", ["adams: {tolerance: 1e-6}", "rk4: {step: 10 ms}", "verlet: {step: 10 ms}"])
 def test_joints_stay_closed_whatever_the_errors_are(tmp_path, solver):
     outputs = ("rods.a.start.position", "rods.a.end.position", "rods.b.start.position")
     speeds = ("rods.a.start.velocity", "rods.a.end.velocity", "rods.b.start.velocity")
@@ -73,6 +74,21 @@ def test_joints_stay_closed_whatever_the_errors_are(tmp_path, solver):
         assert np.abs(row[1] - row[2]).max() < 1e-13
         assert np.abs(row[3]).max() < 1e-12
         assert np.abs(row[4] - row[5]).max() < 1e-12
+
+
+def test_a_method_of_many_short_steps_closes_joints_in_few_of_them_and_on_every_frame(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(RODS.replace("SOLVER", "adams: {tolerance: 1e-10}"))
+    run = Run(load(path, pruned=False))
+    march, open_between = run.islands[0].march, 0
+    for moment in run.moments(np.linspace(0, 2, 200)):
+        assert np.abs(moment.read("rods", "a.start.position")).max() < 1e-13
+        end = march.stopped().y
+        opened = np.abs(end - march._settled(march.time, end)).max()
+        assert opened < 1e-9
+        open_between += opened > 1e-15
+    assert open_between > 100
+    assert march.statistics.evaluations == 2 * march.statistics.steps + march.statistics.rejected
 
 
 def test_the_force_of_a_hinge_is_what_the_bodies_weigh_and_pull(tmp_path):

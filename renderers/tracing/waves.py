@@ -25,6 +25,7 @@ from renderers.tracing.path_hits_kernels import bend_paths, dress_paths, meet_pa
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.scratch import asked_rays, begun, given_up, scratch_beside
 from renderers.tracing.solids.plain_lanes import lanes_for
+from renderers.tracing.solids.whole_bands import bands_gatherer, in_one_call
 from renderers.tracing.tiles_kernels import fill_background
 from renderers.tracing.waves_kernels import (
     advance_paths,
@@ -51,7 +52,8 @@ if TYPE_CHECKING:
 TILES, RAYS = 10, 40
 """Size of a wave of the camera's rays, and of a list of rays, in tiles; a wave's memory stays in a core's cache."""
 MORE_TILES, MORE_RAYS = 40, 80
-"""Sizes in scenes without light from around: for most pictures a wave is a whole band, to save calls from Python."""
+"""Sizes in scenes without light from around whose waves are led from here: for most pictures a wave is a whole band, to
+save calls from Python."""
 
 
 class Waves:
@@ -65,8 +67,10 @@ class Waves:
         ``layers``: of records."""
         self.scene, self.packets = scene, packets
         around = scene.reals[layout.HAS_LIGHT] != 0.0
-        self.tiles = TILES if around else MORE_TILES
-        room, rays = (TILE * TILE * count for count in (self.tiles, RAYS if around else MORE_RAYS))
+        in_one = in_one_call(scene, packets, layers)
+        few = around or in_one
+        self.tiles = TILES if few else MORE_TILES
+        room, rays = (TILE * TILE * count for count in (self.tiles, RAYS if few else MORE_RAYS))
         width = -(-int(scene.reals[layout.WIDTH]) // TILE) * TILE
         self.asked = asked_rays(rays) if packets is None else packets.asked(rays)
         self.scratch = scratch_beside(self.asked, scene, rows)
@@ -106,21 +110,41 @@ class Waves:
         self.own = np.empty((layers, room, COLUMNS), dtype=np.float32)
         self.found = np.empty((layers, room, columns), dtype=np.float32)
         self.spares = np.empty((some, COLUMNS), dtype=np.float32)
+        self.whole: Callable[..., tuple[int, int]] | None = None
+        if in_one and self.looks is not None:
+            memory = self.at[0], self.cones, self.gathered, self.paths, self.of, self.hits, self.met, self.skins
+            more = self.ways, self.looks
+            self.whole = bands_gatherer(scene, packets, self.lanes, self.scratch, self.asked, *memory, *more)
 
     def gather(
         self, start: int, stop: int, reached: Array, busy: Array, mirrored: Array, records: Array, visibility: Array,
         final: bool, radiance: Array,
     ) -> tuple[int, int, int]:  # fmt: skip
-        """Fill rows start..stop: records (L, h w, COLUMNS), radiance (h w, 3), visibility (L, h w, V) of L layers.
+        """Fill rows start..stop, of one or more bands, of L layers.
 
-        Returns the numbers of pixels with an undecided root, of those with a second record, and of rays given up.
-        Radiance is the part that needs no visibility, or all of it if visibility is ``final``. Rays are traced only in
-        ``reached`` tiles; tiles with a hit become ``busy``, those with a second record ``mirrored``.
+        That is records (L, h w, COLUMNS), radiance (h w, 3) and visibility (L, h w, V). Returns the numbers of pixels
+        with an undecided root, of those with a second record, and of rays given up. Radiance is the part that needs no
+        visibility, or all of it if visibility is ``final``. Rays are traced only in ``reached`` tiles; tiles with a hit
+        become ``busy``, those with a second record ``mirrored``.
         """
+        if self.whole is not None:
+            band = start, stop, reached, busy, mirrored, records, visibility, final, radiance
+            unsure, lost = self.whole(*band)
+            return unsure, 0, lost
+        rest = reached, busy, mirrored, records, visibility, final, radiance
+        bands = [self._gather_band(at, min(at + TILE, stop), *rest) for at in range(start, stop, TILE)]
+        undecided, seconds, lost = map(sum, zip(*bands, strict=True))
+        return undecided, seconds, lost
+
+    def _gather_band(
+        self, start: int, stop: int, reached: Array, busy: Array, mirrored: Array, records: Array, visibility: Array,
+        final: bool, radiance: Array,
+    ) -> tuple[int, int, int]:  # fmt: skip
+        """Run ``gather`` for a band of at most TILE rows, by waves that are led from here."""
         begun(self.scratch)
+        undecided = seconds = 0
         fill_background(self.scene, start, stop, reached, busy, mirrored, records, radiance)
         tiles = np.flatnonzero(reached[start // TILE])
-        undecided = seconds = 0
         for wave, first in enumerate(range(0, len(tiles), self.tiles)):
             some, at = tiles[first : first + self.tiles], self.at[wave]
             doubted, more = self._gather(start, stop, some, at, busy, mirrored, records, visibility, final, radiance)

@@ -9,7 +9,7 @@ from numba import types
 
 from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.lanes_kernels import load, store, turn_over
+from sceneql.compiled.lanes_kernels import load, spread, store, turn_over
 from sceneql.flows.fourier_kernels import fourier
 from sceneql.flows.layout import (
     BOTH,
@@ -222,6 +222,28 @@ def along(x, count, stride, rows, step, groups, outer, forward, tables, scratch,
             take_back(raw, here, count, stride, step, lanes)
 
 
+@lean_inlined
+def copied(source, target, lanes):
+    """Up to BOTH numbers."""
+    if lanes == BOTH:
+        store(target, 0, load(source, 0))
+        store(target, LANES, load(source, LANES))
+    else:
+        for lane in range(lanes):
+            target[lane] = source[lane]
+
+
+@lean_inlined
+def multiplied(mine, factors, lanes):
+    """Up to BOTH numbers times factors, in place."""
+    if lanes == BOTH:
+        store(mine, 0, load(mine, 0) * load(factors, 0))
+        store(mine, LANES, load(mine, LANES) * load(factors, LANES))
+    else:
+        for lane in range(lanes):
+            mine[lane] *= factors[lane]
+
+
 @lean(types.void(A, N, N, N, A, A, I, A, A, A, A, F, F), inner=True)
 def through_modes_of_rows(x, nx, ny, nz, tables, scratch, plans, spectrum, along_x, along_y, along_z, a, size):
     """`through_modes` of x, whose rows along x are transformed already and stay so.
@@ -246,9 +268,7 @@ def through_modes_of_rows(x, nx, ny, nz, tables, scratch, plans, spectrum, along
         for q in range(count):
             mine = raw[BOTH * q :]
             if spectrum.size > 0:
-                factors = spectrum[rows * q + begin :]
-                for lane in range(lanes):
-                    mine[lane] *= factors[lane]
+                multiplied(mine, spectrum[begin * count + lanes * q :], lanes)
             elif deep:
                 for lane in range(lanes):
                     j, i = (begin + lane) // nx, (begin + lane) % nx
@@ -275,19 +295,52 @@ def through_modes(x, nx, ny, nz, tables, scratch, plans, spectrum, along_x, alon
     along(x, nx, 1, ny * nz, nx, 1, 0, False, tables, scratch, plans[:PLAN])
 
 
-@lean(types.void(A, N, N, N, N, N, N, N, types.boolean, A, A, I), inner=True)
-def transform_of_rows(x, nx, ny, nz, first, last, back, front, forward, tables, scratch, plans):
-    """`transform`, forward where all is 0 but rows from ``first`` to before ``last`` along y, ``back`` to before
-    ``front`` along z; back where no others are wanted."""
-    plane, deep = nx * ny, front - back
-    for turn in range(3):
-        axis = turn if forward else 2 - turn
-        if axis == 0 and last - first == ny:
-            along(x[back * plane :], nx, 1, ny * deep, nx, 1, 0, forward, tables, scratch, plans[:PLAN])
-        elif axis == 0:
-            here = x[back * plane + first * nx :]
-            along(here, nx, 1, last - first, nx, deep, plane, forward, tables, scratch, plans[:PLAN])
-        elif axis == 1:
-            along(x[back * plane :], ny, nx, nx, 1, deep, plane, forward, tables, scratch, plans[PLAN : 2 * PLAN])
-        elif nz > 1:
-            along(x, nz, plane, plane, 1, 1, 0, forward, tables, scratch, plans[2 * PLAN : 3 * PLAN])
+@lean_inlined
+def rows_along_x(x, nx, ny, nz, box, few, forward, tables, scratch, plans):
+    """Transform rows along x, all or a few of few planes."""
+    first, last, back, front = box
+    if not few:
+        first, last, back, front = 0, ny, 0, nz
+    whole = last - first == ny
+    here, count = x[nx * (first + ny * back) :], (last - first) * (front - back if whole else 1)
+    along(here, nx, 1, count, nx, 1 if whole else front - back, nx * ny, forward, tables, scratch, plans[:PLAN])
+
+
+@lean(types.void(A, N, N, N, A, A, I, A, types.UniTuple(N, 4), types.boolean, types.boolean), inner=True)
+def through_few_rows(x, nx, ny, nz, tables, scratch, plans, spectrum, box, from_few, to_few):
+    """`through_modes` where all is 0 but in few rows (``from_few``; of a flat x these are read alone, of a deep one
+    their planes) or no others are wanted.
+
+    ``box``: from and to before which row along y, and along z. Along the last axis a row goes there and back while it
+    is in the cache, so that memory gives and takes few rows.
+    """
+    widest()
+    first, last, back, front = box
+    plane, deep = nx * ny, nz > 1
+    rows_along_x(x, nx, ny, nz, box, from_few, True, tables, scratch, plans)
+    begin, count = (back, front - back) if from_few else (0, nz)
+    if deep:
+        along(x[begin * plane :], ny, nx, nx, 1, count, plane, True, tables, scratch, plans[PLAN : 2 * PLAN])
+    count, rows = (nz, plane) if deep else (ny, nx)
+    low, high = (back, front) if deep else (first, last)
+    plan = plans[2 * PLAN :] if deep else plans[PLAN : 2 * PLAN]
+    raw, room = scratch[: BOTH * count], scratch[BOTH * count :]
+    for begin in range(0, rows, BOTH):
+        lanes = min(BOTH, rows - begin)
+        for q in range(count):
+            mine = raw[BOTH * q :]
+            if lanes < BOTH or (from_few and not low <= q < high):
+                store(mine, 0, spread(0.0))
+                store(mine, LANES, spread(0.0))
+            if low <= q < high or not from_few:
+                copied(x[rows * q + begin :], mine, lanes)
+        one_way(raw, BOTH, raw, BOTH, count, True, room, tables, plan)
+        for q in range(count):
+            multiplied(raw[BOTH * q :], spectrum[begin * count + lanes * q :], lanes)
+        one_way(raw, BOTH, raw, BOTH, count, False, room, tables, plan)
+        for q in range(low if to_few else 0, high if to_few else count):
+            copied(raw[BOTH * q :], x[rows * q + begin :], lanes)
+    begin, count = (back, front - back) if to_few else (0, nz)
+    if deep:
+        along(x[begin * plane :], ny, nx, nx, 1, count, plane, False, tables, scratch, plans[PLAN : 2 * PLAN])
+    rows_along_x(x, nx, ny, nz, box, to_few, False, tables, scratch, plans)

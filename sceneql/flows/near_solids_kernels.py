@@ -13,7 +13,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.flows.box_modes_kernels import transform_of_rows
+from sceneql.flows.box_modes_kernels import through_few_rows, through_modes
 from sceneql.flows.layout import (
     CELLS,
     CONDUCTANCES,
@@ -216,12 +216,11 @@ def by_few(b, small, count, room, floats, ints):
     scratch, plans = floats[ints[WORK] :], ints[PLANS:]
     from_row, to_row = range_of(count, cells, nx, ny)
     from_plane, to_plane = range_of(count, cells, nx * ny, nz) if nz > 1 else (0, 1)
+    start, stop = (nx * ny * from_plane, nx * ny * to_plane) if nz > 1 else (nx * from_row, nx * to_row)
+    box, none = (from_row, to_row, from_plane, to_plane), floats[:0]
     for c in range(n):
         z[c] = b[c]
-    transform_of_rows(z, nx, ny, nz, 0, ny, 0, nz, True, floats, scratch, plans)
-    for c in range(n):
-        z[c] *= spectrum[c]
-    transform_of_rows(z, nx, ny, nz, from_row, to_row, from_plane, to_plane, False, floats, scratch, plans)
+    through_few_rows(z, nx, ny, nz, floats, scratch, plans, spectrum, box, False, True)
     at_cells(count, cells, z, q, floats, ints)
     for number in range(count):
         r[number] = b[int(cells[number])] - q[number]
@@ -232,7 +231,7 @@ def by_few(b, small, count, room, floats, ints):
         if not left > small:
             solved = left <= small
             break
-        for c in range(n):
+        for c in range(start, stop):
             z[c] = 0.0
         for number in range(count):
             e[number] = cuts[number] * r[number]
@@ -241,10 +240,7 @@ def by_few(b, small, count, room, floats, ints):
         for number in range(count):
             s[number] = r[number] - q[number]
             z[int(cells[number])] = s[number]
-        transform_of_rows(z, nx, ny, nz, from_row, to_row, from_plane, to_plane, True, floats, scratch, plans)
-        for c in range(n):
-            z[c] *= spectrum[c]
-        transform_of_rows(z, nx, ny, nz, from_row, to_row, from_plane, to_plane, False, floats, scratch, plans)
+        through_few_rows(z, nx, ny, nz, floats, scratch, plans, spectrum, box, True, True)
         for number in range(count):
             z[int(cells[number])] += e[number]
         at_cells(count, cells, z, q, floats, ints)
@@ -270,10 +266,7 @@ def by_few(b, small, count, room, floats, ints):
         before = now
     for number in range(count):
         b[int(cells[number])] += x_source[number]
-    transform_of_rows(b, nx, ny, nz, 0, ny, 0, nz, True, floats, scratch, plans)
-    for c in range(n):
-        b[c] *= spectrum[c]
-    transform_of_rows(b, nx, ny, nz, 0, ny, 0, nz, False, floats, scratch, plans)
+    through_modes(b, nx, ny, nz, floats, scratch, plans, spectrum, none, none, none, 0.0, 0.0)
     for number in range(count):
         b[int(cells[number])] += x_own[number]
     return solved

@@ -68,6 +68,8 @@ def plans(
 ) -> tuple[list[int], Floats, int]:  # fmt: skip
     """(integers of all three axes, 1/eigenvalues (cells,) of the pressure equation, size of scratch [floats]).
 
+    Eigenvalues stand in the order in which `through_modes_of_rows` asks for them: of BOTH rows along the last axis
+    after those of the BOTH before, so that memory gives one after another.
     ``conductances``: those of the faces normal to each of the two or three axes.
     """
     ints: list[int] = []
@@ -83,8 +85,10 @@ def plans(
     spectrum = total.ravel()
     least = spectrum[spectrum > 1e-12 * spectrum.max(initial=1e-300)].min(initial=np.inf)
     inverse = 1.0 / (np.where(spectrum >= least, spectrum, least) * prod(lengths))
+    rows = np.where(np.isfinite(inverse), inverse, 0.0).reshape(shape[len(conductances) - 1], -1)
+    inverse = np.concatenate([rows[:, begin : begin + BOTH].ravel() for begin in range(0, rows.shape[1], BOTH)])
     room = BOTH * (8 * max(shape) + (max(shape) + 1) + 16) + 2 * PAD
-    return ints, np.where(np.isfinite(inverse), inverse, 0.0), room
+    return ints, inverse, room
 
 
 def factors(n: int) -> list[int]:

@@ -17,12 +17,11 @@ class Resized:
     """What the model of a solid of elements is for `bench`."""
 
     def by_methods(self: Any) -> Mapping[str, Any]:
-        """Itself by every kind of elements that suits, the best last; none of a file."""
+        """Itself by every kind of elements, last the one that suits its law best; none of a file."""
         if self.file is not None:
             return {}
-        best, spacing = self.chosen_element(), _spacing(self)
-        kinds = [(one, kind) for one, kind in elements().items() if kind is best or not kind.mean]
-        kinds.sort(key=lambda one: (one[1].edges, one[1] is best))
+        best, spacing = self.model_copy(update={"element": None}).chosen_element(), _spacing(self)
+        kinds = sorted(elements().items(), key=lambda one: (one[1] is best, one[1].edges))
         return {one: self.model_copy(update={"element": one, "spacing": spacing}) for one, _ in kinds}
 
     def spaced(self: Any) -> float:

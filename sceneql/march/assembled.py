@@ -160,8 +160,12 @@ class Assembled:
             self._add_contact(contact)
         if any(tie.drive for tie in self.assembly.ties) and not self.assembly.driven and not self.found.errors:
             from sceneql.bodies.rigid.tied_step import add_bounded_step
+            from sceneql.contacts.rigid_exact.group import assemble_drives
 
-            add_bounded_step(self.assembly)
+            name = next(tie.name for tie in self.assembly.ties if tie.drive)
+            with self.word(name):
+                if self.island.contacts or not assemble_drives(self.assembly):
+                    add_bounded_step(self.assembly)
 
     def _add_force(self, force: str) -> None:
         """Add a force on the masses of all its models, on skins and on fluids."""

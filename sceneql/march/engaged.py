@@ -129,6 +129,7 @@ def engage(system: System, stepper: Stepper, driver: Driver) -> Engaged:
         (kernels.ORDER, method.order),
         (kernels.LAST_STAGE, -1 if local and between else last),
         (kernels.CONTROLS, control.self_controlled),
+        (kernels.SETTLES, method.settles if system.structure.settling else 0),
         (kernels.HALVES, control.halves),
         # Newton's method keeps surfaces from passing each other by itself, up to the state of its last stage.
         (kernels.WATCHED, keeps_apart is not None and not (needs.newton and method.last_stage >= 0)),

@@ -43,11 +43,10 @@ pair whose impact is due (-1: none)."""
     COUNTS,
 ) = range(8, 23)
 """Properties of solver and island (system.Stepper); whether a body rests on a local contact (channels.HOLDS); whether
-the arrays of the step's start and end are swapped, for the end of a step is the next one's start; whether there are
-kernels that act after steps (Assembly.after_step), and whether they changed anything after the last one; successive
-steps that have hardly moved time; whether there are such kernels that act on samples, too; whether surfaces may pass
-one another in a whole step (Assembly.limit); how often the step to try next is halved for what exact contacts did in
-those before, which fixed steps forget by and by, and others after each."""
+the arrays of the step's start and end are swapped, as an end is the next start; whether kernels act after steps, and
+whether they changed anything after the last; successive steps that have hardly moved time; 0, or if such kernels act on
+samples, too, after how many steps they do (Method.settles); whether surfaces may pass one another in a whole step; how
+often the next step is halved for what exact contacts did before, which fixed steps forget by and by."""
 
 SHORTEST = 1e-3
 """Part of a fixed step below which it is not halved any more."""
@@ -383,7 +382,8 @@ def march(
                 rate(t1, y1, rate1, floats, ints)
         if counts[SETTLES] > 0:
             floats[channels.SETTLED] = counts[LOCAL] == 0 and counts[ALTERED] == 0 and counts[PENDING] < 0
-            if settle(t0, t1, y0, rate0, y1, floats, ints) or later:
+            now = counts[STEPS] % counts[SETTLES] == 0 or not later
+            if (now and settle(t0, t1, y0, rate0, y1, floats, ints)) or later:
                 rate(t1, y1, rate1, floats, ints)
         clock[T0] = t0
         clock[T1] = t1

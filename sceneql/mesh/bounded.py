@@ -18,17 +18,20 @@ def bounded(tape: Tape, low: Corner, high: Corner) -> Tape:
 
     from sceneql.frame import Tape
 
-    code = [tuple(int(number) for number in row) for row in tape.code]
-    constants = [float(number) for number in tape.constants]
-    value = len(code) - 1
+    rows, value, known = len(tape.code), len(tape.code) - 1, len(tape.constants)
+    code: list[tuple[int, int, int, int]] = []
     for axis in range(3):
+        place = rows + len(code)
         code.append((ops.X + axis, 0, 0, 0))
-        place = len(code) - 1
-        for corner, above in ((low, False), (high, True)):
-            code.append((ops.CONSTANT, len(constants), 0, 0))
-            constants.append(float(corner[axis]))
-            bound = len(code) - 1
+        for number, above in ((known + 2 * axis, False), (known + 2 * axis + 1, True)):
+            bound = rows + len(code)
+            code.append((ops.CONSTANT, number, 0, 0))
             code.append((ops.SUB, place, bound, 0) if above else (ops.SUB, bound, place, 0))
-            code.append((ops.MAX, value, len(code) - 1, 0))
-            value = len(code) - 1
-    return Tape(np.array(code, dtype=np.int32), np.array(constants, dtype=np.float64), tape.parts)
+            code.append((ops.MAX, value, bound + 1, 0))
+            value = bound + 2
+    bounds = np.array([low, high], dtype=np.float64).T.ravel()
+    return Tape(
+        np.concatenate([tape.code, np.array(code, dtype=np.int32)]),
+        np.concatenate([tape.constants, bounds]),
+        tape.parts,
+    )

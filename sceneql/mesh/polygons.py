@@ -22,6 +22,8 @@ class Polygons:
     """(m, 3)."""
     normals: Floats
     """(n, 3) unit gradients, pointing outward; zero where the field has none, and on edges and corners kept sharp."""
+    unfolded: bool = False
+    """Whether it is known that none of its triangles is `folds.overturned`, of the tape that it was made from."""
 
 
 def touched(chosen: NDArray[np.bool_], corners: NDArray[np.integer]) -> NDArray[np.bool_]:

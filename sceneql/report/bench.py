@@ -18,6 +18,7 @@ from sceneql.files import whole
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import Solver
 from sceneql.quantities.diagnostic import ScriptError
+from sceneql.report.bench_elements import element_section, takes_little
 from sceneql.report.bench_grids import GridSection, grid_section
 from sceneql.report.bench_surfaces import Section, surface_section
 from sceneql.report.energy_drift import Drift, drift
@@ -30,6 +31,10 @@ from sceneql.report.work_precision import Measurement, Reference, among, known, 
 
 CLEAR = 10.0
 """An error counts for the observed order if it is at least this multiple of the reference's own error."""
+NO_REFERENCE = (
+    "solvers are not compared, since runs at tight tolerances would take minutes: they are with larger elements, "
+    "as by --set models.NAME.elastic.spacing=..., or a shorter clock"
+)
 ASKED = (1e-3, 1e-6, 1e-9)
 """Relative errors for which the cheapest solver is named by default."""
 
@@ -43,17 +48,19 @@ def bench(
     asked: float | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
     chosen: Sequence[str] = (),
+    say: Callable[[str], None] = lambda line: None,
 ) -> str:
     """Run every island by every applicable solver, and measure implicit surfaces by rays and meshes.
 
     Returns the report text. ``output``: a folder, or the files' path without extension. Written are CSV and JSON with
     all runs, SVGs (and PNGs) of the error against run time and step and of the energy drift, and HTML with all of it.
-    Fields are run on several grids (``grids``), on these by all schemes (``schemes``), and their systems are solved by
-    every linear solver (``linear``). Implicit surfaces of the first picture at its start, in several sizes, have files
-    of their own (``rays``, ``meshes``, ``surfaces``). ``words``: a folder of the user's own words; ``asked``: the
-    relative error for which the cheapest solver is named; ``chosen``: the solvers to run, empty for all. Raises
-    Unsuitable for a scene without islands and implicit surfaces and for solvers that do not apply, RunFailure where no
-    reference reaches the end.
+    Solids of elements come first (``elements``): by kinds of elements and spacings, with orders. Fields are run on
+    several grids (``grids``), on these by all schemes (``schemes``), and their systems are solved by every linear
+    solver (``linear``). Implicit surfaces of the first picture at its start, in several sizes, have files of their own
+    (``rays``, ``meshes``, ``surfaces``). ``say`` gets lines as soon as runs end; ``words``: a folder of the user's own
+    words; ``asked``: the relative error for which the cheapest solver is named; ``chosen``: the solvers to run, empty
+    for all. Raises Unsuitable for a scene without islands and implicit surfaces and for solvers that do not apply,
+    RunFailure where no reference reaches the end.
     """
     frames = pictured(graph)
     if not graph.islands and not frames:
@@ -70,6 +77,10 @@ def bench(
     lines: list[str] = []
     summary: list[str] = []
     compile_seconds = 0.0
+    on_elements = element_section(graph, stem, say)
+    if on_elements is not None:
+        lines += on_elements.lines
+        summary += [line for line in on_elements.lines if not line.startswith(" ")]
     for island in graph.islands:
         title = ", ".join(island.models)
         applying = schemes[title]
@@ -81,9 +92,14 @@ def bench(
             lines.append(f"{title}: {word} finds rests, and takes no steps in time whose lengths could be compared")
             summary.append(lines[-1])
             continue
+        if on_elements is not None and not takes_little(on_elements, graph, island):
+            lines.append(f"{title}: {NO_REFERENCE}")
+            summary.append(lines[-1])
+            continue
         truth = reference(graph, island, catalogue)
         lines.append(f"{title}: errors against {truth.because} (itself good to {truth.uncertainty:.0e})")
         summary.append(lines[-1])
+        say(lines[-1])
         for done, (word, solver) in enumerate(applying.items()):
             progress(done, len(applying))
             try:
@@ -96,7 +112,9 @@ def bench(
             rows += runs
             drifts += [moved] if moved is not None else []
             orders[title, word] = _order(runs, CLEAR * truth.uncertainty, graph.settings.clock.end)
-            lines += _account(runs, legend(word, orders[title, word], sum(not run.ok for run in runs)))
+            told = _account(runs, legend(word, orders[title, word], sum(not run.ok for run in runs)))
+            say("\n".join(told))
+            lines += told
         named = cheapest_lines([row for row in rows if row.island == title], truth, asked)
         lines += named
         summary += named
@@ -111,7 +129,8 @@ def bench(
     if on_grids is not None:
         lines += on_grids.lines
         summary += [line for line in on_grids.lines if not line.startswith(" ")]
-    made = _write(stem, graph, rows, orders, drifts, [graph.settings.about, *summary], section, on_grids)
+    parts = [one for one in (on_elements, section) if one is not None]
+    made = _write(stem, graph, rows, orders, drifts, [graph.settings.about, *summary], parts, on_grids)
     return "\n".join([*lines, *_drift_lines(drifts), f"wrote {', '.join(map(str, made))}"])
 
 
@@ -182,7 +201,7 @@ def _write(
     orders: Orders,
     drifts: Sequence[Drift],
     summary: Sequence[str],
-    section: Section | None,
+    sections: Sequence[Section],
     on_grids: GridSection | None,
 ) -> list[Path]:
     """Write all files of the report."""
@@ -199,7 +218,7 @@ def _write(
         plots += [("Error against run time", time), ("Error against step", step)]
         tables.append(_table(rows))
         files.append(table)
-    _write_json(data, graph, rows, orders, drifts, section, on_grids)
+    _write_json(data, graph, rows, orders, drifts, sections, on_grids)
     if on_grids is not None:
         plots += on_grids.plots
         tables += on_grids.tables
@@ -209,7 +228,7 @@ def _write(
         plots.append(("Drift of energy", moved))
         tables.append(_drift_table(drifts))
     files += [data, *both(plots)]
-    if section is not None:
+    for section in sections:
         plots += section.plots
         tables += section.tables
         files += section.files
@@ -276,7 +295,7 @@ def _write_json(
     rows: Sequence[Measurement],
     orders: Orders,
     drifts: Sequence[Drift],
-    section: Section | None,
+    sections: Sequence[Section],
     on_grids: GridSection | None,
 ) -> None:
     found: dict[str, Any] = {
@@ -287,8 +306,8 @@ def _write_json(
         "orders": [{"island": i, "solver": s, "order": order} for (i, s), order in orders.items()],
         "drifts": [asdict(one) for one in drifts],
     }
-    if section is not None:
-        found["surfaces"] = section.data
+    for section in sections:
+        found |= section.data
     if on_grids is not None:
         found["fields"] = on_grids.data
     write_json(path, found)

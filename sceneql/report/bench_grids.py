@@ -1,5 +1,4 @@
-"""The part of `bench` on fields on grids, and solids of elements: error against cell size, and the linear solvers of
-their systems."""
+"""The part of `bench` on fields on grids: error against cell size, and the linear solvers of their systems."""
 
 from __future__ import annotations
 
@@ -39,17 +38,12 @@ def is_field(graph: SimulationGraph, island: Island) -> bool:
     return len(kinds) == 1 and cast(Model, kinds[0]).is_field
 
 
-def has_methods(graph: SimulationGraph, island: Island) -> bool:
-    """Whether an island is a single model that `bench` compares by several methods."""
-    return len(island.models) == 1 and hasattr(graph.tasks[island.models[0]].kind, "by_methods")
-
-
 def grid_section(graph: SimulationGraph, stem: Path, schemes: Mapping[str, Mapping[str, Solver]]) -> GridSection | None:
     """Measure the fields of a scene and write files beside ``stem``; None where it has none.
 
     ``schemes``: the applicable solvers of each island, by its title.
     """
-    islands = [island for island in graph.islands if is_field(graph, island) or has_methods(graph, island)]
+    islands = [island for island in graph.islands if is_field(graph, island)]
     if not islands:
         return None
     lines: list[str] = []
@@ -64,7 +58,7 @@ def grid_section(graph: SimulationGraph, stem: Path, schemes: Mapping[str, Mappi
         compared = method_runs(graph, island)
         by_methods += compared
         if compared:
-            how = f"by tr_bdf2 at tolerance {TOLERANCE:g}" if is_field(graph, island) else "displacements at the end"
+            how = f"by tr_bdf2 at tolerance {TOLERANCE:g}"
             method = f"{title} by methods, {how}, beside the finest {compared[-1].method}:"
             of_methods += [method, *method_lines(compared)]
         if cast(Model, graph.tasks[island.models[0]].kind).field_count() == 0:

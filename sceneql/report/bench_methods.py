@@ -1,5 +1,4 @@
-"""The part of `bench` on fields by finite volumes and by finite elements, and on solids by elements of several kinds:
-error in space against run time."""
+"""The part of `bench` on fields by finite volumes and by finite elements: error in space against run time."""
 
 from __future__ import annotations
 
@@ -8,13 +7,12 @@ import statistics
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Solver
 from sceneql.quantities.diagnostic import ScriptError
-from sceneql.report.grid_ends import island_by
 from sceneql.report.work_precision import run
 
 if TYPE_CHECKING:
@@ -22,12 +20,10 @@ if TYPE_CHECKING:
 
 LEVELS = (4.0, 2.0, 1.0, 0.5, 0.25)
 """Cell sizes of fields relative to the script's own, from coarse to fine."""
-SOLID_LEVELS = (2.0, 1.4, 1.0, 0.7)
-"""Spacings of solids likewise."""
 ENOUGH_SECONDS = 15.0
 """Run time with set-up [s] after which no finer run is tried."""
-LONGEST, SOLID_LONGEST = 10.0, 40.0
-"""Time of compiled steps [s] after which a run is given up; of a solid."""
+LONGEST = 10.0
+"""Time of compiled steps [s] after which a run is given up."""
 REPEATS = 3
 TOLERANCE = 1e-6
 """Relative tolerance of the time integration."""
@@ -35,7 +31,7 @@ TOLERANCE = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class MethodRun:
-    """A run of a field by one method with one cell size, or of a solid by one kind of elements, at the end."""
+    """A run of a field by one method with one cell size, at the end."""
 
     island: str
     method: str
@@ -43,7 +39,7 @@ class MethodRun:
     """[m]"""
     unknowns: int
     error: float
-    """Root mean square error over the volume, of displacements for a solid, relative to the largest value."""
+    """Root mean square error over the volume, relative to the largest value."""
     seconds: float
     """Median run time of the compiled steps [s]."""
     setup: float
@@ -60,7 +56,7 @@ class _End:
     weights: Floats
     unknowns: int
     field: Any
-    """Function from places (k, 3) to values (k,) or (k, 3)."""
+    """Function from places (k, 3) to values (k,)."""
 
 
 def method_runs(graph: SimulationGraph, island: Island) -> list[MethodRun]:
@@ -68,40 +64,27 @@ def method_runs(graph: SimulationGraph, island: Island) -> list[MethodRun]:
 
     Empty where the model has only one method.
     """
+    from sceneql.words.solvers.tr_bdf2 import TrBdf2
+
     title = ", ".join(island.models)
     kind: Any = graph.tasks[island.models[0]].kind
     if not hasattr(kind, "by_methods"):
         return []
-    solver = solver_of(graph, island)
-    if not kind.is_field:
-        island_by(graph, island, solver)  # its own spacing, where the script leaves that to it
+    solver = TrBdf2(tolerance=TOLERANCE)
     methods: Mapping[str, Any] = kind.by_methods()
     if len(methods) < 2:
         return []
-    ends = {
-        name: _ends(graph, island, one, solver, LEVELS if kind.is_field else SOLID_LEVELS)
-        for name, one in methods.items()
-    }
+    ends = {name: _ends(graph, island, one, solver, LEVELS) for name, one in methods.items()}
     best = list(ends)[-1]
     if not ends[best]:
         return []
     reference = ends[best].pop()
-    largest = float(_squares(reference.values).max()) ** 0.5 or 1.0
+    largest = float(abs(reference.values).max()) or 1.0
     return [
         MethodRun(title, name, end.cell, end.unknowns, _error(end, reference) / largest, end.seconds, end.setup)
         for name, some in ends.items()
         for end in some
-        if kind.is_field or end.cell > 0.99 * reference.cell  # what is finer is not told by it
     ]
-
-
-def solver_of(graph: SimulationGraph, island: Island) -> Solver:
-    """What marches the runs: one without an error in time for a field, the script's own for a solid."""
-    from sceneql.words.solvers.tr_bdf2 import TrBdf2
-
-    if cast("Any", graph.tasks[island.models[0]].kind).is_field:
-        return TrBdf2(tolerance=TOLERANCE)
-    return cast(Solver, graph.tasks[island.solver].kind)
 
 
 def told(runs: Sequence[MethodRun]) -> list[str]:
@@ -140,7 +123,7 @@ def _end(graph: SimulationGraph, island: Island, kind: Any, solver: Solver) -> _
     steps, whole = [], []
     for _ in range(REPEATS):
         begun = time.perf_counter()
-        _, march = run(patched, island, solver, LONGEST if kind.is_field else SOLID_LONGEST)
+        _, march = run(patched, island, solver, LONGEST)
         steps.append(march.march.statistics.seconds)
         whole.append(time.perf_counter() - begun - steps[-1])
         if steps[-1] + whole[-1] > 0.5 * ENOUGH_SECONDS:
@@ -152,13 +135,7 @@ def _end(graph: SimulationGraph, island: Island, kind: Any, solver: Solver) -> _
     return _End(kind.spaced(), seconds, min(whole), places, values, weights, unknowns, along)
 
 
-def _squares(values: Floats) -> Floats:
-    """Squares (k,) of numbers (k,), or of vectors (k, 3)."""
-    found: Floats = (values**2).reshape(len(values), -1).sum(axis=1)
-    return found
-
-
 def _error(end: _End, reference: _End) -> float:
     import numpy as np
 
-    return float(np.sqrt(np.average(_squares(end.values - reference.field(end.places)), weights=end.weights)))
+    return float(np.sqrt(np.average((end.values - reference.field(end.places)) ** 2, weights=end.weights)))

@@ -41,11 +41,11 @@ def surface_section(frames: Sequence[SeenFrame], title: str, stem: Path) -> Sect
     lines += map(mesh_line, meshes)
     files = [beside(stem, "rays.csv"), beside(stem, "meshes.csv")]
     for path, kind, runs in ((files[0], RayRun, rays), (files[1], MeshRun, meshes)):
-        _write_csv(path, kind, runs)
+        write_rows(path, kind, runs)
     plot = beside(stem, "surfaces.svg")
     surface_errors(plot, title, rays, meshes)
-    tables = [_table("Rays", RayRun, rays), *([_table("Meshes", MeshRun, meshes)] if meshes else [])]
-    data = {"rays": [asdict(run) for run in rays], "meshes": [asdict(run) for run in meshes]}
+    tables = [table_of("Rays", RayRun, rays), *([table_of("Meshes", MeshRun, meshes)] if meshes else [])]
+    data = {"surfaces": {"rays": [asdict(run) for run in rays], "meshes": [asdict(run) for run in meshes]}}
     return Section(lines, tables, [("Implicit surfaces", plot)], [*files, plot, as_png(plot)], data)
 
 
@@ -74,7 +74,8 @@ def mesh_line(run: MeshRun) -> str:
     )
 
 
-def _table(caption: str, kind: type, runs: Sequence[Any]) -> Table:
+def table_of(caption: str, kind: type, runs: Sequence[Any]) -> Table:
+    """A table of runs, which are instances of one dataclass."""
     head = [item.name.replace("_", " ") for item in fields(kind)]
     return Table(caption, head, [[(_cell(value), "") for value in asdict(run).values()] for run in runs])
 
@@ -83,7 +84,8 @@ def _cell(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def _write_csv(path: Path, kind: type, runs: Sequence[Any]) -> None:
+def write_rows(path: Path, kind: type, runs: Sequence[Any]) -> None:
+    """Write runs, which are instances of one dataclass, as CSV."""
     text = io.StringIO()
     writer = csv.DictWriter(text, [item.name for item in fields(kind)], lineterminator="\n")
     writer.writeheader()

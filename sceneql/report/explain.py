@@ -173,7 +173,10 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
 
 def _chosen(run: IslandRun) -> list[str]:
     """The first method of an automatic solver and the reason; empty where the start fails."""
-    if run.solver is not run.graph.tasks[run.island.solver].kind:
+    own = run.graph.tasks[run.island.solver].kind
+    if run.solver is not own and type(run.solver) is type(own):
+        return [run.methods.remark]
+    if run.solver is not own:
         word = type(run.solver).__module__.rpartition(".")[2]
         return [f"{word} takes its place " + (run.methods.remark or "on a field on a grid")]
     with suppress(RunFailure):

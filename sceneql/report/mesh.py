@@ -117,7 +117,9 @@ def mesh(
 
         solid = _solid(shapes, task, name, moment)
         polygons, hidden, cell, missed = _of_solid(solid, task, name, moment.time, cell, tolerance, sharp)
-        folded = len((folds if sharp else told)(bounded(solid.tape, solid.low, solid.high), polygons))
+        folded = 0
+        if sharp or not polygons.unfolded:
+            folded = len((folds if sharp else told)(bounded(solid.tape, solid.low, solid.high), polygons))
         missed = missed if tolerance is not None and missed > tolerance else 0.0
         if solid.paint is not None:
             from sceneql.field.tape.tape_solid import paint_values

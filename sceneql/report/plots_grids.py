@@ -14,6 +14,7 @@ from sceneql.report.plots import MARKS, SMALLEST, figure_at, panel
 if TYPE_CHECKING:
     from sceneql.report.bench_methods import MethodRun
     from sceneql.report.bench_schemes import SchemeRun
+    from sceneql.report.element_runs import ElementRun
     from sceneql.report.grid_runs import GridRun, LinearRun
 
 
@@ -73,6 +74,23 @@ def methods_against_time(path: Path, title: str, runs: Sequence[MethodRun]) -> N
                 own = [run for run in mine if run.method == method]
                 times, errors = [run.seconds + run.setup for run in own], [max(run.error, SMALLEST) for run in own]
                 axes.plot(times, errors, marker=mark, ms=5, lw=1.2, label=method)
+            label_ends(axes)
+
+
+def elements_against_time(path: Path, title: str, runs: Sequence[ElementRun]) -> None:
+    """Write an SVG: error over run time [s] with the set-up, a panel a quantity, a line an element."""
+    quantities = list(dict.fromkeys((run.island, run.quantity) for run in runs))
+    with figure_at(path, (9.0, 4.8 * len(quantities))) as figure:
+        for k, (island, quantity) in enumerate(quantities):
+            axes = panel(figure, len(quantities), k)
+            axes.set_title(f"{title}: {island}, {quantity}")
+            axes.grid(True, which="major", alpha=0.3)
+            axes.set(xscale="log", yscale="log", xlabel="run time with set-up [s]", ylabel="relative error")
+            mine = [run for run in runs if (run.island, run.quantity) == (island, quantity)]
+            for element, mark in zip(dict.fromkeys(run.element for run in mine), cycle(MARKS), strict=False):
+                own = [run for run in mine if run.element == element]
+                times, errors = [run.seconds + run.setup for run in own], [max(run.error, SMALLEST) for run in own]
+                axes.plot(times, errors, marker=mark, ms=5, lw=1.2, label=element)
             label_ends(axes)
 
 

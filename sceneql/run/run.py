@@ -224,7 +224,7 @@ class IslandRun:
         at = march.stopped()
         states = {
             name: ModelState(at.time, at.y, at.rate, at.floats, None, assembly.remembered(name))
-            for name in dict.fromkeys(contact for contact, _, _ in self.island.contacts)
+            for name in dict.fromkeys(contact for contact, _, _ in self.island.contacts) or (why.part,)
         }
         kept = assembly.before_contacts
         self._make(states, march, kept)

@@ -34,7 +34,7 @@ FIRST = 4e-7
 MOST_PAIRED = 256
 """Largest number of bodies of an observed island with forces between all pairs."""
 GAINED = 0.5
-"""Energy gained, relative to the largest kinetic energy, from which on there is a warning."""
+"""Energy gained, relative to the largest kinetic energy or that taken by forces, from which on there is a warning."""
 UNSEEN = 1e-9
 """Part of the bodies' extent that rounding may move them over the film."""
 MADE = 0.05
@@ -55,8 +55,8 @@ class Balance:
     times: list[float] = field(default_factory=list)
     energies: list[float] = field(default_factory=list)
     """[J]"""
-    kinetic: float = 0.0
-    """Largest kinetic energy so far [J]."""
+    turned_over: float = 0.0
+    """Largest kinetic energy, or energy taken or given by forces, so far [J]."""
     momentum: float = 0.0
     """Largest change of momentum so far [kg m/s]."""
     impulse: float = 0.0
@@ -72,10 +72,10 @@ class Balance:
 
     @property
     def drifts(self) -> list[float]:
-        """Change of energy since the start at each time, relative to the largest of kinetic energy and the start's."""
+        """Change of energy since the start at each time, relative to what was turned over or there at the start."""
         if not self.energies:
             return []
-        scale = max(self.kinetic, abs(self.energies[0])) or 1.0
+        scale = max(self.turned_over, abs(self.energies[0])) or 1.0
         return [(energy - self.energies[0]) / scale for energy in self.energies]
 
     @property
@@ -273,7 +273,9 @@ def _note(balance: Balance, moment: Instant) -> None:
         balance.rounding = _rounding(balance, moment)
     balance.times.append(moment.time)
     balance.energies.append(sum(float(read(name, "energy")) for name in balance.models))
-    balance.kinetic = max(balance.kinetic, sum(float(read(name, "kinetic")) for name in balance.models))
+    kinetic = sum(float(read(name, "kinetic")) for name in balance.models)
+    taken = [abs(float(read(name, "dissipated"))) for name in balance.models if _tells_losses(balance, name)]
+    balance.turned_over = max(balance.turned_over, kinetic, *taken)
     if balance.isolated:
         total = sum(read(name, "momentum") for name in balance.models)
         if balance.at_start is None:
@@ -285,6 +287,11 @@ def _note(balance: Balance, moment: Instant) -> None:
             now = float(read(name, "stretch"))
             first, most = balance.stretch.get(name, (now, now))
             balance.stretch[name] = first, max(most, now)
+
+
+def _tells_losses(balance: Balance, name: str) -> bool:
+    """Whether a model tells the energy that forces took from it."""
+    return "dissipated" in type(balance.island.graph.tasks[name].kind).gives
 
 
 def _rounding(balance: Balance, moment: Instant) -> float:

@@ -66,6 +66,9 @@ class Method:
     at its end, so the step computes these stages itself (see `Needs.prepare`)."""
     stability: tuple[float, ...] = ()
     """Coefficients of an explicit method's stability function, that of z^0 first."""
+    settles: int = 1
+    """Number of steps after which the errors that are removed from samples (``samples`` of Assembly.after_step) are
+    removed from the solution itself, where nothing else acts between steps."""
     name: str = ""
     """The method's name in `explain`, where the march switches methods."""
 

@@ -2,7 +2,8 @@
 
 Run it as ``python tests/bench/bench_implicit.py [--tape | --threads | --before=DIR] [SCENE...]``. Films have 48 frames
 of 640 x 360 pixels, a ray each, with one hard sun, in which the thing turns: processor time of a frame on one thread
-from the script to the PNG file, start and compilation apart, by its stages. Where POV-Ray is installed, the processor
+from the script to the PNG file, start and compilation apart, by its stages: ``bands`` is the whole of roots, hits and
+light where one call does it. Where POV-Ray is installed, the processor
 time of a whole run of it that writes a PNG file stands beside: of the same picture, without light that surfaces reflect
 onto one another (`diffuse_bounces: 0`). The figure with that light, as films are by default, follows, and last that of
 the same scene with an area light, a sky and reflections: things are glossy over a matte floor, and edges have 8 rays.

@@ -1,6 +1,10 @@
 """Orbits: steps, error and time of dop853 beside SciPy's, and of gauss_radau15 beside rebound's IAS15, in one run.
 
-    python tests/bench/bench_orbits.py
+    python tests/bench/bench_orbits.py [PART...]
+
+    single      dop853 beside SciPy's DOP853
+    multistep   evaluations and time at equal error of adams, dop853, gauss_radau15 and SciPy's LSODA
+    long        gauss_radau15 beside rebound's IAS15
 
 Times are medians of the run alone: of our compiled march, of the peers' calls. The peers' rates are numpy's (SciPy) or
 their own C (rebound). Pleiades: Hairer, Norsett & Wanner (1993), II.10; its end from REFERENCES of their test set.
@@ -10,14 +14,17 @@ from __future__ import annotations
 
 import math
 import statistics
+import sys
 import tempfile
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import rebound
 from scipy.integrate import solve_ivp
 
+from sceneql.failure import RunFailure
 from sceneql.march.march import March
 from sceneql.pipeline import load
 from sceneql.run.run import IslandRun
@@ -111,6 +118,60 @@ def against_scipy(name: str, script: str, rate, start, end: float, error_of) -> 
     print(f"  steps {done.steps / theirs:.2f} of SciPy's (bar 1.3), {peer_ms / ms:.0f}x as fast (bar 8)")
 
 
+MOON, PERIOD = 0.012277471, 17.0652165601579625588917206249
+"""Of Arenstorf's orbit in the restricted problem of three bodies (Hairer, Norsett & Wanner 1993, II.0)."""
+ARENSTORF_SPEED = -2.00158510637908252240537862224
+ARENSTORF = (
+    f"models: {{orbit: {{equations: {{start: {{x: 0.994, y: 0, x': 0, y': {ARENSTORF_SPEED}}}, "
+    f"where: {{m: {MOON}, a: (x + m)^2 + y^2, b: (x - 1 + m)^2 + y^2}}, "
+    "rate: {x'': \"x + 2*y' - (1 - m)*(x + m)/a^1.5 - m*(x - 1 + m)/b^1.5\", "
+    "y'': \"y - 2*x' - (1 - m)*y/a^1.5 - m*y/b^1.5\"}}}}\n"
+)
+
+
+def arenstorf_rate(t, y):
+    a, b = ((y[0] + MOON) ** 2 + y[1] ** 2) ** 1.5, ((y[0] - 1 + MOON) ** 2 + y[1] ** 2) ** 1.5
+    return [
+        y[2],
+        y[3],
+        y[0] + 2 * y[3] - (1 - MOON) * (y[0] + MOON) / a - MOON * (y[0] - 1 + MOON) / b,
+        y[1] - 2 * y[2] - (1 - MOON) * y[1] / a - MOON * y[1] / b,
+    ]
+
+
+def at_error(curve, good: float) -> tuple[float, float]:
+    """Evaluations and ms at an error, by straight lines through the logarithms of the two runs about it."""
+    curve = sorted(curve)
+    at = [float(x) for x in np.log([row[0] for row in curve])]
+    if not at[0] <= math.log(good) <= at[-1]:
+        return math.nan, math.nan
+    found = (np.interp(math.log(good), at, np.log([row[k] for row in curve])) for k in (1, 2))
+    evaluations, ms = (math.exp(float(value)) for value in found)
+    return evaluations, ms
+
+
+def multistep(name: str, script: str, rate, start, end: float, error_of) -> None:
+    """Evaluations and ms of four methods where they come to some errors."""
+    curves: dict[str, list[tuple[float, float, float]]] = {}
+    for word in ("adams", "dop853", "gauss_radau15"):
+        curves[word] = []
+        for tolerance in 10.0 ** -np.arange(3.0, 14.5):
+            with suppress(RunFailure):  # a planet that a rough run leads into the sun
+                y, done, ms = ours(script, f"{{{word}: {{tolerance: {tolerance:.0e}}}}}", end, repeats=3)
+                curves[word].append((error_of(y), done.evaluations, ms))
+    curves["SciPy LSODA"] = []
+    for tolerance in 10.0 ** -np.arange(4.0, 14.0):
+        peer, ms = timed(
+            lambda: solve_ivp(rate, (0, end), start, method="LSODA", rtol=tolerance, atol=tolerance),  # noqa: B023
+            repeats=1,
+        )
+        curves["SciPy LSODA"].append((error_of(peer.y[:, -1]), peer.nfev, ms))
+    print(f"{name}: evaluations (ms) at errors of 1e-4, 1e-6, 1e-8, 1e-10")
+    for word, curve in curves.items():
+        cells = (at_error(curve, good) for good in (1e-4, 1e-6, 1e-8, 1e-10))
+        print(f"  {word:14}" + "".join(f"{count:10.0f} ({ms:7.2f})" for count, ms in cells))
+
+
 def against_rebound(orbits: int) -> None:
     end = 2 * math.pi * orbits
 
@@ -141,27 +202,42 @@ def against_rebound(orbits: int) -> None:
     print(f"  {ratio:.2f} of its time (bar 1)")
 
 
-def main() -> None:
-    start = np.concatenate([STARS.ravel(), SPEEDS.ravel()])
-
+def main(parts: list[str]) -> None:
     def pleiades_error(y) -> float:
         ours = len(y) > 28
         x1, y7 = (y[0], y[19]) if ours else (y[0], y[13])
         return max(abs(x1 / X1 - 1), abs(y7 / Y7 - 1))
 
-    against_scipy("Pleiades", pleiades(), pleiades_rate, start, 3.0, pleiades_error)
     end = 2 * math.pi * 10.3
     exact = np.array(kepler_at(end))
-    against_scipy(
-        f"Kepler e={ECCENTRIC}, 10.3 orbits",
-        KEPLER,
-        kepler_rate,
-        [0.1, 0, 0, math.sqrt(19)],
-        end,
-        lambda y: float(np.abs(y[:2] - exact).max()),
-    )
-    against_rebound(1000)
+    bodies = np.concatenate([STARS.ravel(), SPEEDS.ravel()])
+    planet = [0.1, 0, 0, math.sqrt(19)]
+    problems = {
+        "Pleiades": (pleiades(), pleiades_rate, bodies, 3.0, pleiades_error),
+        f"Kepler e={ECCENTRIC}, 10.3 orbits": (
+            KEPLER,
+            kepler_rate,
+            planet,
+            end,
+            lambda y: float(np.abs(y[:2] - exact).max()),
+        ),
+        "Arenstorf": (
+            ARENSTORF,
+            arenstorf_rate,
+            [0.994, 0, 0, ARENSTORF_SPEED],
+            PERIOD,
+            lambda y: math.hypot(y[0] - 0.994, y[1]),
+        ),
+    }
+    if "single" in parts:
+        for name in list(problems)[:2]:
+            against_scipy(name, *problems[name])
+    if "multistep" in parts:
+        for name, problem in problems.items():
+            multistep(name, *problem)
+    if "long" in parts:
+        against_rebound(1000)
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:] or ["single", "multistep", "long"])

@@ -235,28 +235,48 @@ def rods() -> None:
     bodies += [f"b: {rod('1.5 0 0', False, ', points: {start: -0.5 0 0 m}')}"]
     ties = ["one: {hinge: {between: [links.a, world], at: 0 0 0 m}}"]
     ties += ["two: {hinge: {between: [links.b, links.a], at: 1 0 0 m}}"]
-    words = [f"dop853: {{tolerance: {tolerance}}}" for tolerance in ("1e-8", "1e-10", "1e-12")]
+    words = [f"dop853: {{tolerance: {tolerance}}}" for tolerance in ("1e-8", "1e-9", "1e-10", "1e-11", "1e-12")]
+    words += [f"adams: {{tolerance: {tolerance}}}" for tolerance in ("1e-9", "1e-10", "1e-11", "1e-12", "1e-13")]
     words += ["gauss_radau15", "rk4: {step: 2 ms}", "rk4: {step: 0.5 ms}"]
     places = ("links.a.start.position", "links.a.end.position", "links.b.start.position")
     for end in (2.0, 10.0):
         exact = np.array(AT_2) if end == 2 else two_rods(end)
         print(f"two rods on hinges, {end:g} s")
         tell("", "error", "gap [m]", "ms", "kernel", "steps")
+        curves: dict[str, list[tuple[float, float]]] = {"dop853": [], "adams": [], "MuJoCo": []}
         for word in words:
             outputs = ("one.angle", "two.angle", "one.speed", "two.speed", *places)
-            (a, b, va, vb, foot, top, other), _, columns, _ = run(tied(bodies, ties, word, end), end, *outputs)
+            (a, b, va, vb, foot, top, other), ms, columns, _ = run(tied(bodies, ties, word, end), end, *outputs)
             gap = max(np.abs(foot).max(), np.abs(top - other).max())
             off = swung([a, b, va, vb], exact)
             tell(word, f"{off:.1e}", f"{gap:.0e}", *columns)
+            curves.get(word.partition(":")[0], []).append((off, ms))
         if there("mujoco"):
             for step in (0.002, 0.001, 0.0005, 0.00025):
                 found, ms = often(partial(rods_mujoco, step, end))
-                tell(f"MuJoCo RK4 {1e3 * step:g} ms", f"{swung(found, exact):.1e}", "0", f"{ms:.3f}")
+                off = swung(found, exact)
+                tell(f"MuJoCo RK4 {1e3 * step:g} ms", f"{off:.1e}", "0", f"{ms:.3f}")
+                curves["MuJoCo"].append((off, ms))
+        good = 1e-9 if end == 2 else 1e-6
+        least = {name: at_error(curve, good) for name, curve in curves.items() if curve}
+        told = ", ".join(f"{name} {ms:.2f} ms" for name, ms in least.items())
+        bar = (
+            f": MuJoCo's time is {least['MuJoCo'] / least['adams']:.1f} times that of adams"
+            if "MuJoCo" in least
+            else ""
+        )
+        print(f"  at an error of {good:g}: {told}{bar}")
         if there("exudyn"):
             for step in (0.002, 0.0005):
                 found, gap, ms = rods_exudyn(step, end)
                 off = f"{np.abs(np.angle(np.exp(1j * (found - exact[:2])))).max():.1e}"
                 tell(f"Exudyn GeneralizedAlpha {1e3 * step:g} ms", off, f"{gap:.0e}", f"{ms:.3f}")
+
+
+def at_error(curve: Sequence[tuple[float, float]], error: float) -> float:
+    """ms at an error, by the straight line through the logarithms of (error, ms)."""
+    line = np.polyfit(*np.log(np.transpose(curve)), 1)
+    return math.exp(float(np.polyval(line, math.log(error))))
 
 
 def swung(found: Sequence[float], exact: Any) -> float:

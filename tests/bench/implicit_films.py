@@ -41,6 +41,7 @@ STAGES = {
     "lowering": ("sceneql.tools:frame_of", "sceneql.run.never_drawn:look"),
     "packing": ("renderers.tracing.draw:pack", "renderers.tracing.solids.bundles:Packets.__init__"),
     "roots": ("renderers.tracing.solids.bundles:meet_asked", "renderers.tracing.solids.plain_lanes_kernels:meet_plain"),
+    "bands": ("renderers.tracing.solids.whole_bands_kernels:gather_bands",),
     "hits": tuple(
         f"renderers.tracing.{where}"
         for where in (

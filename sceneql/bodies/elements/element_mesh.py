@@ -5,7 +5,7 @@ Imports numpy.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import permutations
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,7 @@ from sceneql.bodies.filling.kept_creases import CREASE
 from sceneql.bodies.filling.tetrahedra import ENDS, boundary, edges
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from numpy import int64
     from numpy.typing import NDArray
@@ -35,6 +35,18 @@ FINE_EDGES = (0.04550370412564964, 0.04254602077708147)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class OnLine:
+    """Nodes on a line or at a point of the surface that a hold or a load names."""
+
+    nodes: Any
+    """(k,)."""
+    edges: Any
+    """(m, 2 or 3) the outer edges on the line: their ends, and the node between them."""
+    inside: bool
+    """Whether nodes inside that stand on it belong to it, too."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class ElementMesh:
     """A mesh of elements of one kind."""
 
@@ -45,6 +57,14 @@ class ElementMesh:
     """(e, nodes) the nodes of each element."""
     corners: int
     """Number of nodes that are corners of elements."""
+    lines: Mapping[str, OnLine] = field(default_factory=dict)
+    """By the name of a hold or a load, the nodes on its line or point."""
+    put: tuple[int, int] = (0, 0)
+    """How many vertices were added for lines and points, and how many were moved there."""
+
+    def told(self) -> str:
+        """What was changed for lines and points; empty for nothing."""
+        return "; for lines and points {} nodes were added and {} moved".format(*self.put) if any(self.put) else ""
 
     @property
     def faces(self) -> Ints:
@@ -132,6 +152,8 @@ class Onto:
     crease: Callable[[Floats, Floats, Floats], Floats]
     """Moves points (k, 3) onto a crease, by normals (k, 2, 3) of the two surfaces that meet there and unit directions
     (k, 2, 3) from it into these surfaces; NaN where the crease is not found."""
+    line: Callable[[ElementMesh, Floats], Floats] | None = None
+    """Moves nodes (n, 3) of a mesh, which are on the surface, onto lines on it."""
 
 
 def meshed(element: type[Element], points: Floats, tetrahedra: Ints, onto: Onto | None = None) -> ElementMesh:
@@ -167,7 +189,7 @@ def onto_object(straight: ElementMesh, onto: Onto) -> tuple[Floats, Creases]:
         found = onto.crease(points[creases.nodes], creases.normals, creases.sides)
         met = ~np.isnan(found).any(axis=1)
         moved[creases.nodes[met]] = found[met]
-    return moved, creases
+    return (moved if onto.line is None else onto.line(straight, moved)), creases
 
 
 def curved(straight: ElementMesh, onto: Onto) -> tuple[ElementMesh, int]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,12 +12,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.bodies.elements.element_mesh import ElementMesh, Onto, curved, meshed
-from sceneql.bodies.elements.refined import Lengths, hollows, refined
+from sceneql.bodies.elements.refined import Lengths, bent, hollows, in_curved, refined
 from sceneql.bodies.filling.fill import Inside
 from sceneql.bodies.filling.finer import Finer, lengths
+from sceneql.bodies.filling.held_lines import Lines, surface_of
 from sceneql.bodies.filling.kept_creases import creases_kept, onto_crease
 from sceneql.bodies.filling.msh import Read, read_msh
 from sceneql.bodies.filling.split_creases import creases_split
+from sceneql.bodies.filling.split_lines import Surface
 from sceneql.bodies.filling.stuffing import lattice_counts, stuffed
 from sceneql.bodies.filling.tetrahedra import volumes
 from sceneql.doing import doing
@@ -30,6 +33,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.bodies.elements.element import Element
+    from sceneql.bodies.elements.hold import Part
     from sceneql.bodies.filling.block import Block
     from sceneql.frame import Floats, Ints
     from sceneql.kinds import Ref
@@ -61,8 +65,13 @@ def bounded_by(spacing: float) -> Callable[[Floats, Floats], None]:
     return check
 
 
-def laid(block: Block, element: type[Element], finer: Mapping[str, Finer], assembly: Assembly) -> ElementMesh:
-    """The mesh of a block. Raises ScriptError for one that is inside out, LimitRefused for too many elements."""
+def laid(
+    block: Block, element: type[Element], finer: Mapping[str, Finer], assembly: Assembly, parts: Mapping[str, Part]
+) -> ElementMesh:
+    """The mesh of a block, in which lines and points of ``parts`` have nodes.
+
+    Raises ScriptError for one that is inside out, LimitRefused for too many elements.
+    """
     from sceneql.bodies.filling.block import CUT
 
     try:
@@ -77,7 +86,7 @@ def laid(block: Block, element: type[Element], finer: Mapping[str, Finer], assem
         message = f"the block is inside out, or flat, at ({told}) m: look at the order of its corners"
         raise ScriptError([Diagnostic("not-filled", message, assembly.line())])
     try:
-        return _fitted(element, points, tetrahedra, finer, None, assembly.line())
+        return _fitted(element, points, tetrahedra, finer, None, assembly.line(), Lines(parts))
     except Exceeds as error:
         raise LimitRefused(str(error), assembly.line(), TOO_FINE) from None
 
@@ -89,10 +98,11 @@ def _fitted(
     finer: Mapping[str, Finer],
     onto: Onto | None,
     line: Span | None,
+    lines: Lines,
     spacing: float = 0.0,
     turn: float | None = None,
 ) -> ElementMesh:
-    """The mesh of elements on tetrahedra (t, 4), refined by ``finer`` and at concave curved surfaces.
+    """The mesh of elements on tetrahedra (t, 4), refined by ``finer`` and at concave surfaces; ``lines`` get nodes.
 
     ``turn``: largest angle [rad] by which a concave surface may turn along an edge, None for any. Raises Exceeds for
     too many elements, ScriptError for an entry of ``finer`` far from all elements.
@@ -106,8 +116,13 @@ def _fitted(
         at, cells = points, tetrahedra
         if wanted:
             at, cells = refined(at, cells, lambda places: np.min([one(places) for one in wanted], axis=0), onto, check)
-        straight = meshed(element, at, cells)
-        return (straight, 0) if onto is None or not element.edges else curved(straight, onto)
+        if not lines:
+            straight = meshed(element, at, cells)
+            return (straight, 0) if onto is None or not element.edges else curved(straight, onto)
+        cut = lines.cut(at, cells, surface_of(onto), element.edges)
+        straight = meshed(element, cut.points, cut.cells)
+        mesh, flat = curved(straight, lines.curved(cut, onto)) if element.edges else (straight, 0)
+        return lines.marked(cut, mesh), flat
 
     asked = [lengths(finer)] if finer else []
     hollow = None if onto is None or turn is None else hollows(points, tetrahedra, onto, spacing, turn)
@@ -124,9 +139,14 @@ def _fitted(
     return mesh
 
 
-def of_file(file: str, element: type[Element], finer: Mapping[str, Finer], assembly: Assembly) -> ElementMesh:
-    """The mesh of a .msh file. Raises ScriptError for one that cannot be read, LimitRefused for too many elements."""
-    line, path = assembly.line(), Path(file)
+def of_file(
+    file: str, element: type[Element], finer: Mapping[str, Finer], assembly: Assembly, parts: Mapping[str, Part]
+) -> ElementMesh:
+    """The mesh of a .msh file, in which lines and points of ``parts`` have nodes.
+
+    Raises ScriptError for one that cannot be read, LimitRefused for too many elements.
+    """
+    line, path, lines = assembly.line(), Path(file), Lines(parts)
     try:
         with doing(f"reading {path.name}"):
             read = read_msh(path)
@@ -134,13 +154,13 @@ def of_file(file: str, element: type[Element], finer: Mapping[str, Finer], assem
     except Exceeds as error:
         raise LimitRefused(str(error), line, "take fewer elements") from None
     except (ValueError, OSError) as error:
-        raise ScriptError([Diagnostic("not-filled", str(error), line)]) from None
+        raise ScriptError([Diagnostic("not-filled", str(error), line, _instead(path))]) from None
     if read.cells.shape[1] == 4 or finer or not element.edges:
         used, which = np.unique(read.cells[:, :4], return_inverse=True)
         points, tetrahedra = read.points[used], which.reshape(-1, 4).astype(np.int32)
         _upright(points, tetrahedra, read, path.name, line)
         try:
-            return _fitted(element, points, tetrahedra, finer, None, line)
+            return _fitted(element, points, tetrahedra, finer, None, line, lines)
         except Exceeds as error:
             raise LimitRefused(str(error), line, TOO_FINE) from None
     corners = np.unique(read.cells[:, :4])
@@ -151,7 +171,23 @@ def of_file(file: str, element: type[Element], finer: Mapping[str, Finer], assem
     _upright(mesh.points, mesh.cells, read, path.name, line)
     places = np.concatenate([np.eye(4), np.asarray(element.rule[0])])
     _told(mesh.sizes(places).min(axis=1), mesh.points[mesh.cells[:, :4]], read, path.name, line)
-    return mesh
+    if not lines:
+        return mesh
+    surface = Surface(real=partial(in_curved, mesh))
+    cut = lines.cut(mesh.points[: mesh.corners], mesh.cells[:, :4], surface, more=True)
+    if cut.put != (0, 0):
+        straight = meshed(element, cut.points, cut.cells)
+        mesh = replace(straight, points=bent(mesh, straight.points, straight.cells, cut.parents))
+    return lines.marked(cut, mesh)
+
+
+def _instead(path: Path) -> str:
+    """What to write or save in place of a file of another kind; "" for a .msh."""
+    if path.suffix.lower() in (".stl", ".obj", ".ply"):
+        return f"a surface is filled as an object: `mesh: {{file: {path.name}}}` under objects, and `of` it a `spacing`"
+    if path.suffix.lower() != ".msh":
+        return f"save it as a .msh in text, as by Gmsh: `gmsh -0 {path.name} -format msh2 -o {path.stem}.msh`"
+    return ""
 
 
 def _upright(points: Floats, cells: Ints, read: Read, name: str, line: Span | None) -> None:
@@ -180,8 +216,9 @@ def filled(
     finer: Mapping[str, Finer],
     assembly: Assembly,
     turn: float | None = None,
+    parts: Mapping[str, Part] | None = None,
 ) -> ElementMesh:
-    """The mesh of an object, whose lattice lies along its axes.
+    """The mesh of an object, in which lines and points of ``parts`` have nodes; whose lattice lies along its axes.
 
     Raises ScriptError where it cannot be filled, LimitRefused for too many elements.
 
@@ -189,13 +226,13 @@ def filled(
     implicit objects without ``finer`` are cached, since variants, studies and twins fill the same object repeatedly.
     """
     inside, spacing = Inside(ref, assembly, own_axes=True), spacing_of(ref, spacing, element, assembly)
-    key = None
-    if inside.field is not None and not finer:
-        parts = (inside.field.code, inside.field.constants, inside.field.parts, inside.low, inside.high)
-        key = (element, spacing, turn, *(part.tobytes() for part in (*parts, inside.in_world(np.eye(3)))))
+    key, lines = None, Lines(parts or {}, inside.axes)
+    if inside.field is not None and not finer and not lines:
+        told = (inside.field.code, inside.field.constants, inside.field.parts, inside.low, inside.high)
+        key = (element, spacing, turn, *(part.tobytes() for part in (*told, inside.in_world(np.eye(3)))))
     if key is None or (mesh := _kept.pop(key, None)) is None:
         with doing(f"filling {ref.name}"):
-            mesh = _filled(inside, spacing, element, finer, assembly.line(), turn)
+            mesh = _filled(inside, spacing, element, finer, assembly.line(), lines, turn)
     if key is not None:
         _kept[key] = mesh
         if len(_kept) > KEPT:
@@ -223,6 +260,7 @@ def _filled(
     element: type[Element],
     finer: Mapping[str, Finer],
     line: Span | None,
+    lines: Lines,
     turn: float | None,
 ) -> ElementMesh:
     inside.bounded(bounded_by(spacing), inside.low, inside.high)
@@ -261,7 +299,7 @@ def _filled(
         return onto_crease(places, normals, sides, spacing, inside.holds, inside.crossing)
 
     try:
-        mesh = _fitted(element, points, tetrahedra, finer, Onto(onto, onto_edge), line, spacing, turn)
+        mesh = _fitted(element, points, tetrahedra, finer, Onto(onto, onto_edge), line, lines, spacing, turn)
     except Exceeds as error:
         raise LimitRefused(str(error), inside.span, TOO_FINE) from None
     return replace(mesh, points=inside.in_world(mesh.points))

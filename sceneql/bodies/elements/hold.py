@@ -16,11 +16,14 @@ from sceneql.quantities.expression import Link, Symbol
 from sceneql.quantities.intervals import range_of
 
 if TYPE_CHECKING:
+    from sceneql.bodies.elements.element_mesh import ElementMesh
     from sceneql.frame import Floats
     from sceneql.quantities.span import Span
     from sceneql.system import Assembly, Bodies
 
 AXES = ("x", "y", "z")
+HELD, LOADED = "hold {}", "load {}"
+"""Names of the lines and points of holds and loads in a mesh."""
 TURNED = "sceneql.bodies.elements.turned_hold_kernels"
 
 
@@ -28,9 +31,15 @@ class Part(Record):
     """A part of a solid by places of its material: where these stand before it is moved or turned."""
 
     where: Annotated[Formula, Symbols(AXES)] | None = field(
-        "A formula of the place [m] that holds there, `x < 0.1`.", None
+        "A formula of the place [m] that holds there, `x < 0.1`; with an equality a line on the surface, along which "
+        "elements get nodes: `(y == 0.3)*(x > 0)`.",
+        None,
     )
-    near: kinds.FixedPosition | None = field("A place: what is nearest to it, or all `within` a distance.", None)
+    near: kinds.FixedPosition | None = field(
+        "A place: the point of the surface that is nearest to it, where a hold gives elements a node; or all `within` "
+        "a distance.",
+        None,
+    )
     within: kinds.FixedLength | None = field("Distance from `near`.", None, above=0)
     object: kinds.ObjectRef | None = field("An object: what lies in it.", None)
 
@@ -99,13 +108,18 @@ class Hold(Part):
         return self.shift.constant and not any(assembly.initial(self.shift))
 
 
-def chosen(name: str, hold: Part, places: Floats, assembly: Assembly, line: Span | None) -> Any:
-    """Numbers (k,) of the nodes, at places (n, 3) [m], that lie in a part. Raises ScriptError where there is none."""
+def chosen(name: str, hold: Part, mesh: ElementMesh, assembly: Assembly, line: Span | None) -> Any:
+    """Numbers (k,) of the nodes of a mesh that lie in a part. Raises ScriptError where there is none."""
     import numpy as np
 
-    found = np.flatnonzero(hold.holds(places, assembly))
+    on = mesh.lines.get(HELD.format(name))
+    found = np.flatnonzero(hold.holds(mesh.points, assembly)) if on is None or on.inside else on.nodes
+    if on is not None and on.inside:
+        found = np.union1d(found, on.nodes)
     if not len(found):
         help = None if hold.within is None else "the nodes stand a spacing apart: take a larger `within`"
+        if on is not None:
+            help = "an equality tells a line where its surface crosses it: `(y == 0.1)*(x > 0)`, in meters"
         raise ScriptError([Diagnostic("no-mass", f"'{name}' holds no node", hold.place() or line, help)])
     return found
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
-from sceneql.bodies.elements.hold import Part
+from sceneql.bodies.elements.hold import HELD, LOADED, Hold, Part
 from sceneql.kinds import Problem, Quantity, Value, field
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -53,6 +53,19 @@ class Load(Part):
         elif self.near is not None and self.within is None and given != ["force"]:
             yield Problem(f"a {given[0]} acts on an area: say `within`, how far from there", ("near",), at_key=True)
 
+    def line(self, name: str, mesh: ElementMesh) -> Any:
+        """The edges (m, 2 or 3) of the line on which it acts; None where it acts on faces."""
+        import numpy as np
+
+        on = mesh.lines.get(LOADED.format(name))
+        if on is None or not len(on.edges):
+            return None
+        size = len(mesh.points)
+        keys = np.sort(on.edges[:, :2], axis=1) @ (size, 1)
+        corners = mesh.faces[:, :3].astype(np.int64)
+        sides = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2), axis=2) @ (size, 1)
+        return None if np.isin(sides, keys).all(axis=1).any() else on.edges
+
     def spread(self, name: str, mesh: ElementMesh, assembly: Assembly, line: Span | None) -> Spread:
         """The quadrature points on the loaded faces. Raises ScriptError where no part of the surface is loaded."""
         import numpy as np
@@ -67,10 +80,14 @@ class Load(Part):
             found = found.some(self.holds(found.at(points, faces), assembly))
         else:
             inside = self.holds(points, assembly)
+            if (on := mesh.lines.get(LOADED.format(name))) is not None:
+                inside[on.nodes] = True
             found = spread(np.flatnonzero(inside[faces[:, :3]].all(axis=1)), finely=False)
         if not len(found.faces):
             message = f"'{name}' acts on no part of the surface"
             help = "a face of the surface is loaded where all its corners lie in the part"
+            if self.force is None and self.where is not None:
+                help += "; on a line, `where: y == 0`, a `force` acts"
             raise ScriptError(
                 [Diagnostic("no-mass", message, self.place() or line, None if self.within is not None else help)]
             )
@@ -85,12 +102,15 @@ class Load(Part):
         """
         import numpy as np
 
-        from sceneql.bodies.elements.on_faces import functions
-        from sceneql.system import Slopes
+        from sceneql.bodies.elements.on_faces import functions, line_shares
 
         faces = mesh.faces
-        where = self.spread(name, mesh, assembly, line)
         head = (bodies.position_at, bodies.velocity_at, bodies.work_at)
+        if (edges := self.line(name, mesh)) is not None:
+            assert self.force is not None
+            _add_dead(self.force, line_shares(mesh.points, edges), head, assembly)
+            return
+        where = self.spread(name, mesh, assembly, line)
         if self.pressure is not None:
             _add_pressure(self.pressure, where, faces, held, head, assembly)
             return
@@ -101,12 +121,27 @@ class Load(Part):
         if self.torque is not None:
             _add_torque(self.torque, faces[where.faces], areas, shapes, held, head, assembly, f"'{name}'")
             return
-        nodes = np.flatnonzero(weights)
         value = self.traction if self.force is None else self.force
         assert value is not None
-        ints = (*head, assembly.value(value), assembly.floats(weights[nodes]), len(nodes), *nodes.tolist())
-        energy = "sceneql.bodies.elements.load_energy_kernels:dead"
-        assembly.term("internal", "sceneql.bodies.elements.load_kernels:dead", ints, Slopes("", (), ()), energy=energy)
+        _add_dead(value, weights, head, assembly)
+
+
+def parts_on_lines(holds: Mapping[str, Hold], loads: Mapping[str, Load]) -> dict[str, Part]:
+    """The parts that may be lines or points, by their names in a mesh: holds, and forces at a `where`."""
+    parts: dict[str, Part] = {HELD.format(name): one for name, one in holds.items()}
+    return parts | {LOADED.format(name): one for name, one in loads.items() if one.force is not None and one.where}
+
+
+def _add_dead(value: Value, weights: Any, head: tuple[int, int, int], assembly: Assembly) -> None:
+    """Add the term of a force or traction that keeps its direction, with its weights (n,) on the nodes."""
+    import numpy as np
+
+    from sceneql.system import Slopes
+
+    nodes = np.flatnonzero(weights)
+    ints = (*head, assembly.value(value), assembly.floats(weights[nodes]), len(nodes), *nodes.tolist())
+    energy = "sceneql.bodies.elements.load_energy_kernels:dead"
+    assembly.term("internal", "sceneql.bodies.elements.load_kernels:dead", ints, Slopes("", (), ()), energy=energy)
 
 
 def _add_pressure(

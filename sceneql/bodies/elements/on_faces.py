@@ -24,6 +24,8 @@ PLACES = (
 )
 WEIGHTS = (0.10995174365532187,) * 3 + (0.22338158967801147,) * 3
 """Weights, of sum 1, of the rule of degree 4 on a triangle with the nodes PLACES (Dunavant 1985)."""
+GAUSS = 0.15**0.5
+"""Distance of the outer two of Gauss's three points from the middle of an edge, as a share of it."""
 PARTS = 12
 """Parts of a face's sides where only a part of the face may be loaded."""
 
@@ -112,3 +114,19 @@ def nearest(points: Floats, faces: Ints, place: Floats) -> Spread:
     k = int(np.argmin(np.linalg.norm(found - place, axis=1)))
     at = on_triangles.points_to_barycentric(corners[k : k + 1], found[k : k + 1])
     return Spread(np.array([k]), at, np.ones(1))
+
+
+def line_shares(points: Floats, edges: Any) -> Floats:
+    """What part (n,) of a force spread along edges (m, 2 or 3), with nodes ``points`` (n, 3) [m], acts on each node.
+
+    The third node is the one between the ends. Gauss's rule of three points, by the length of the curved edge.
+    """
+    at = np.array([0.5 - GAUSS, 0.5, 0.5 + GAUSS])
+    shapes, ways = np.stack([1.0 - at, at], axis=1), np.tile([-1.0, 1.0], (3, 1))
+    if edges.shape[1] == 3:
+        shapes = np.stack([(1.0 - at) * (1.0 - 2.0 * at), at * (2.0 * at - 1.0), 4.0 * at * (1.0 - at)], axis=1)
+        ways = np.stack([4.0 * at - 3.0, 4.0 * at - 1.0, 4.0 - 8.0 * at], axis=1)
+    lengths = np.linalg.norm(ways @ points[edges], axis=2) * (np.array([5.0, 8.0, 5.0]) / 18.0)
+    found = np.zeros(len(points))
+    np.add.at(found, edges, lengths @ shapes / lengths.sum())
+    return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -95,7 +95,7 @@ def refined(
     straight, cells, parents = bisected(points, tetrahedra, wanted, bounded)
     if onto is None:
         return straight, cells
-    start = _bent(meshed(elements()["p2"], points, tetrahedra, onto), straight, cells, parents)
+    start = bent(meshed(elements()["p2"], points, tetrahedra, onto), straight, cells, parents)
     settled = _settled(start, straight, cells, len(points), onto)
     shape = shapes(start[cells])
     for _ in range(len(points)):
@@ -108,21 +108,26 @@ def refined(
     return settled, cells
 
 
-def _bent(coarse: ElementMesh, straight: Floats, cells: Ints, parents: NDArray[int64]) -> Floats:
+def bent(coarse: ElementMesh, straight: Floats, cells: Ints, parents: NDArray[int64]) -> Floats:
     """Positions (n, 3) [m] in the curved elements ``coarse`` of points ``straight`` (n, 3) in the straight ones.
 
-    ``cells`` (t, 4): tetrahedra between these points; ``parents`` (t,): the coarse element that each is a part of.
+    ``cells`` (t, nodes): elements between these points; ``parents`` (t,): the coarse element that each is a part of.
     """
     nodes, first = np.unique(cells, return_index=True)
-    own = parents[first // 4]
+    bent = straight.copy()
+    bent[nodes] = in_curved(coarse, straight[nodes], parents[first // cells.shape[1]])
+    return bent
+
+
+def in_curved(coarse: ElementMesh, straight: Floats, own: Any) -> Floats:
+    """Places (k, 3) [m] in the curved elements ``own`` (k,) of places (k, 3) in the straight ones."""
     corners = coarse.points[coarse.cells[own, :4]]
     sides = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
-    local = np.linalg.solve(sides, (straight[nodes] - corners[:, 0])[..., None])[..., 0]
+    local = np.linalg.solve(sides, (straight - corners[:, 0])[..., None])[..., 0]
     shares = coarse.element.functions(np.concatenate([1.0 - local.sum(axis=1, keepdims=True), local], axis=1))
     a, b = np.array(ENDS).T
     flat = np.concatenate([corners, 0.5 * (corners[:, a] + corners[:, b])], axis=1)
-    bent = straight.copy()
-    bent[nodes] += np.einsum("nk,nkj->nj", shares, coarse.points[coarse.cells[own]] - flat)
+    bent: Floats = straight + np.einsum("nk,nkj->nj", shares, coarse.points[coarse.cells[own]] - flat)
     return bent
 
 

@@ -88,7 +88,7 @@ def creases_kept(
     for which, corner in _nearest(points[outer], corners, spacing):
         vertex = outer[which]
         own = tetrahedra[cells[starts[vertex] : starts[vertex + 1]]]
-        if free[vertex] and corner not in taken and _bear(points, own, vertex, corners[corner]):
+        if free[vertex] and corner not in taken and keeps_shape(points, own, vertex, corners[corner]):
             points[vertex], planes[vertex], free[vertex] = corners[corner], turned[corner], False
             taken.add(corner)
     for _ in range(PASSES):
@@ -109,7 +109,7 @@ def creases_kept(
             if not free[found[k]].all():
                 continue
             own = tetrahedra[cells[starts[vertex] : starts[vertex + 1]]]
-            if _bear(points, own, vertex, places[k]):
+            if keeps_shape(points, own, vertex, places[k]):
                 points[vertex], free[vertex] = places[k], False
                 planes[vertex, :2] = flat[k]
         if free.sum() == before:
@@ -354,7 +354,7 @@ def _tangent(sides: Floats, normals: Floats) -> Floats:
     return found
 
 
-def _bear(points: Floats, own: Ints, vertex: int, place: Floats) -> bool:
+def keeps_shape(points: Floats, own: Ints, vertex: int, place: Floats) -> bool:
     """Whether the tetrahedra ``own`` (t, 4) around a vertex keep their shape when it moves to ``place`` (3,)."""
     before = points[own]
     after = np.where((own == vertex)[:, :, None], place, before)

@@ -133,7 +133,7 @@ class Driven(Joint):
         acts = "acts" if parts in (["friction"], ["its motor"]) else "act"
         told = "on the velocities at the end of a step (mode local), of order 1 in the step where they do"
         if parts and state.floats[state.ints[-(LAST_AT + 2)] + 3] == 1.0:
-            told = "with the contacts (mode exact): their changes are located, forces have the solver's order"
+            told = "by mode exact: their changes are located, forces have the solver's order"
         return f"{' and '.join(parts)} {acts} {told}" if parts else ""
 
     def trouble(self, state: ModelState) -> str:

@@ -3,7 +3,7 @@
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_kernels import MOST_CORRECTIONS, balance, clear, refine, remaining, survey
+from sceneql.bodies.rigid.tie_kernels import MOST_CORRECTIONS, SHARE, balance, clear, refine, survey
 from sceneql.bodies.rigid.tie_matrix_kernels import (
     EASE_AT,
     MOVED_AT,
@@ -11,6 +11,7 @@ from sceneql.bodies.rigid.tie_matrix_kernels import (
     MOVERS_AT,
     ONE,
     OTHER,
+    RIGHT_AT,
     ROWS,
     ROWS_AT,
     ROWS_FROM,
@@ -78,8 +79,9 @@ def shift(y, floats, ints):
 
 @lean(F(A, I))
 def weigh_speeds(floats, ints):
-    """Write the size of what the AT_SPEED of each row is a sum of to AT_SIZE; the largest speed against that."""
-    worst = 0.0
+    """Write the size of what the AT_SPEED of each row is a sum of to AT_SIZE, and less that speed to the right hand
+    side; the largest speed against its size."""
+    worst, row = 0.0, ints[RIGHT_AT]
     for tie in range(ints[TIES]):
         which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
         first, second, to = ints[MOVED_AT] + MOVED * which[ONE], ints[MOVED_AT] + MOVED * which[OTHER], which[ROWS_FROM]
@@ -90,10 +92,11 @@ def weigh_speeds(floats, ints):
             for c in range(3):
                 size += abs(own[c] * one[AT_V + c]) + abs(own[3 + c] * one[AT_W + c])
                 size += abs(own[6 + c] * two[AT_V + c]) + abs(own[9 + c] * two[AT_W + c])
-            own[AT_SIZE] = size
+            own[AT_SIZE], floats[row] = size, -own[AT_SPEED]
             if abs(own[AT_SPEED]) > worst * size:
                 worst = abs(own[AT_SPEED]) / size
             to += ROW
+            row += 1
     return worst
 
 
@@ -114,12 +117,14 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
             to = ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH]
             if abs(floats[to + AT_C]) > OPENED * floats[to + AT_SIZE]:
                 floats[to + AT_OPEN] = max(floats[to + AT_OPEN], abs(floats[to + AT_C]))
-    if weigh_speeds(floats, ints) > CLOSED:
+    speed = weigh_speeds(floats, ints)
+    if speed > CLOSED:
         if gap > CLOSED:  # nothing was surveyed behind the last closing
             clear(floats, ints)
         # Where rows may depend on one another the matrix can change much by a slight motion.
         if before <= SLIGHT and gap <= CLOSED and floats[ints[EASE_AT]] == 0.0:
-            refine(floats, ints, AT_SPEED, AT_SIZE, remaining(floats, ints, AT_SPEED, AT_SIZE), MOST_CORRECTIONS, False)
+            # Nothing moves the movers yet: the speeds are what remains.
+            refine(floats, ints, AT_SPEED, AT_SIZE, min(1.0, speed / SHARE), MOST_CORRECTIONS, False)
         else:
             balance(floats, ints, AT_SPEED, AT_SIZE)
         for m in range(ints[MOVERS]):

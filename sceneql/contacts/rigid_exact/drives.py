@@ -38,10 +38,11 @@ def drives_of(
     found: list[list[float]] = []
     ints: list[list[int]] = []
     numbers = assembly.numbers()
-    for tie in assembly.ties:
-        drive = tie.drive
-        if drive is None or not any(moves(mover, assembly) for mover in tie.movers):
-            continue
+    driven = [
+        (tie, tie.drive) for tie in assembly.ties if tie.drive and any(moves(one, assembly) for one in tie.movers)
+    ]
+    rates = [_rates(tie, drive, assembly) for tie, drive in driven]  # raises before anything is added
+    for (tie, drive), rate in zip(driven, rates, strict=True):
         own = [0.0] * DRIVEN
         for side, mover in enumerate(tie.movers):
             one = integers(mover)
@@ -55,7 +56,7 @@ def drives_of(
         own[EFFORT_AT], own[GIVEN_AT] = drive.effort_at, assembly.state([0.0])
         assembly.write(drive.effort_at + 3, [1.0])
         found.append(own)
-        ints.append([*drive_integers(drive), *_rates(tie, drive, assembly)])
+        ints.append([*drive_integers(drive), *rate])
     assembly.driven = True
     return found, ints
 

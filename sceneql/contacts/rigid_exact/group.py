@@ -8,15 +8,15 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from sceneql.contacts.distance.rigid_contact import place_of
-from sceneql.kinds import Ref
+from sceneql.kinds import Ref, Value
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import Number
 from sceneql.system import Place
 
 if TYPE_CHECKING:
     from sceneql.contacts.distance.convex import Convex
     from sceneql.contacts.distance.rigid_masses import Masses
     from sceneql.frame import Floats
-    from sceneql.kinds import Value
     from sceneql.system import Assembly, Bodies, Led
 
 ROOM = "sceneql.contacts.rigid_exact"
@@ -26,6 +26,8 @@ MOST = 24
 """Largest number of bodies: all their conditions form one dense system."""
 ADVICE = "`mode: local` takes what jams or tumbles without end"
 """Help of the message for a contact that cannot go on."""
+MOST_DRIVEN = 8
+"""Largest number of bodies on ties that touch nothing."""
 FEW = 8
 """Contacts that storage is reserved for: this many per body, and this many more."""
 
@@ -68,7 +70,7 @@ def assemble(
     if assembly.ints_of(HOLD):
         message = "bodies in mode `exact` collide by one `collision` an island: its contacts are solved together"
         raise ScriptError([Diagnostic("invalid", message, assembly.line(), "name all that collide in one `between`")])
-    found = _shapes(assembly, everyone, others, masses)
+    found = _shapes(assembly, everyone, others, masses) if everyone or others else Touching([], [], [], set())
     n = len(found.moving)
     if n > MOST:
         message = f"{n} rigid bodies are too many for contacts in mode `exact`: at most {MOST}"
@@ -151,6 +153,26 @@ def assemble(
         -2,
         memory + rows.JAMMED,
     )
+
+
+def assemble_drives(assembly: Assembly) -> bool:
+    """Add stops, motors and friction of the ties of few bodies that touch nothing; returns whether it takes them.
+
+    It takes them where the solver chooses its steps by a tolerance and is explicit, up to the instant at which it finds
+    no way.
+    """
+    from sceneql.bodies.rigid.tie_system import integers
+    from sceneql.bodies.rigid.tied_step import moves
+
+    held = {integers(mover) for tie in assembly.ties for mover in tie.movers if moves(mover, assembly)}
+    if len(held) > MOST_DRIVEN or not assembly.by_tolerance or assembly.went_on:
+        return False
+    none = Value(Number(0.0))
+    try:
+        assemble(assembly, (), (), none, none, none, gives_way=True)
+    except ScriptError:  # a motor that follows what has no known rate
+        return False
+    return True
 
 
 @dataclass(frozen=True, slots=True)

@@ -66,7 +66,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
     from sceneql.flows.schemes.additive_kernels import HEAD
     from sceneql.flows.schemes.multistep import operators_of
-    from sceneql.flows.schemes.operators_kernels import OPERATOR
+    from sceneql.flows.schemes.operator_layout import OPERATOR
 
     flow, operators, velocities, tables, text = operators_of(system)
     tallies = {grid.at + int(np.prod(grid.cells.shape)) for grid in system.fields.grids}

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from sceneql.flows.layout import PLAN
+from sceneql.flows.layout import LED, PLAN
+from sceneql.flows.schemes.operator_layout import ODD, TALLY
 from sceneql.system import Control, Method, Needs, Prepared, Stepper
 from sceneql.system.stepping import UNREAD
 
@@ -68,7 +69,9 @@ def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[
     shape, n = grid.cells.shape, int(np.prod(grid.cells.shape))
     volume = floats[grid.cells.insides_at : grid.cells.insides_at + n].reshape(shape[::-1])
     sink = floats[grid.sink_at : grid.sink_at + n].reshape(shape[::-1])
-    whole = float(volume.max())
+    inner = volume[tuple(slice(1, -1) if count > 2 else slice(None) for count in shape[::-1])]
+    # Cells that solids cut may have more than a whole one: the fluid moved with them.
+    whole = float(np.median(inner[inner > 0.0])) if (inner > 0.0).any() else float(volume.max())
     decays, plans, lengths, total, axes = [], [], 1, 0.0, []
     for axis in range(3):
         count, periodic = shape[axis], grid.cells.periodic[axis]
@@ -92,9 +95,20 @@ def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[
         total += 2.0 * rate * whole
         axes.append((ties, *_line(count, rate, periodic, zero, faces)))
     offsets = (grid.at, *shape, grid.cells.insides_at, grid.sink_at, *grid.faces_at)
-    exact = int(_is_product(volume, sink, whole, axes))
+    odd = _unlike_product(volume, sink, whole, axes)
     sizes = tables.store([lengths, whole, total])
-    return [*offsets, *decays, sizes, grid.at + n if tallied else -1, exact, *plans]
+    return [*offsets, *decays, sizes, grid.at + n if tallied else -1, int(not odd.any()), *plans, *_extent(odd)]
+
+
+def _extent(odd: Any) -> list[int]:
+    """From and to before which cell along x, y, z of a grid (nz, ny, nx) any is marked; 0s where none is."""
+    import numpy as np
+
+    found = []
+    for axis in (2, 1, 0):
+        places = np.flatnonzero(odd.any(axis=tuple(one for one in range(3) if one != axis)))
+        found += [int(places[0]), int(places[-1]) + 1] if len(places) else [0, 0]
+    return found
 
 
 def _line(count: int, rate: float, periodic: bool, zero: tuple[bool, bool], faces: bool) -> tuple[Any, Any, Any]:
@@ -112,8 +126,9 @@ def _line(count: int, rate: float, periodic: bool, zero: tuple[bool, bool], face
     return volumes, ties, sinks
 
 
-def _is_product(volume: Floats, sink: Floats, whole: float, axes: list[tuple[Any, ...]]) -> bool:
-    """Whether a field (nz, ny, nx) is the tensor product of rows along its axes, which transforms solve exactly."""
+def _unlike_product(volume: Floats, sink: Floats, whole: float, axes: list[tuple[Any, ...]]) -> Any:
+    """Of a field (nz, ny, nx) the cells whose equation is not that of the tensor product of rows along its axes, which
+    transforms solve exactly."""
     import numpy as np
 
     def spread(axis: int, values: Any) -> Any:
@@ -125,19 +140,19 @@ def _is_product(volume: Floats, sink: Floats, whole: float, axes: list[tuple[Any
 
     solved = volume > 0.0
     sinks = sum(spread(axis, one[3]) for axis, one in enumerate(axes))
-    alike = _alike(volume, spread(0, axes[0][1]), np.ones_like(solved)) and _alike(sink, sinks, solved)
+    odd = _unlike(volume, spread(0, axes[0][1])) | (_unlike(sink, sinks) & solved)
     for axis, (ties, _, along, _) in enumerate(axes):
-        beside = solved | np.roll(solved, 1, axis=2 - axis)
-        alike = alike and _alike(ties, spread(axis, along), beside)
-    return alike
+        cut = _unlike(ties, spread(axis, along))
+        odd |= (cut | np.roll(cut, -1, axis=2 - axis)) & solved
+    return odd
 
 
-def _alike(found: Any, wanted: Any, chosen: Any) -> bool:
-    """Whether two arrays agree up to rounding at the chosen entries."""
+def _unlike(found: Any, wanted: Any) -> Any:
+    """Where two arrays differ by more than rounding."""
     import numpy as np
 
     wanted = np.broadcast_to(wanted, found.shape)
-    return bool((np.abs(found - wanted)[chosen] <= SAME * max(np.abs(wanted).max(), 1e-300)).all())
+    return np.abs(found - wanted) > SAME * max(np.abs(wanted).max(), 1e-300)
 
 
 def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, str]:
@@ -163,6 +178,10 @@ def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, st
     fields = [*velocities, *(grid for grid in fixed if _spreads(grid, system.floats))]
     tables = Tables()
     found = [operator(grid, system.floats, tables, grid not in velocities) for grid in fields]
+    for one in found:
+        # Solids that move; and amounts, of which transforms may leave less than nothing by rounding.
+        if flow.ints[LED] > 0 or one[TALLY] >= 0:
+            one[ODD] = -1
     left = len(grids) - len(fixed)
     text = "advection explicit, viscosity and diffusion implicit by conjugate gradients, then a projection"
     text += flow.pressure
@@ -180,7 +199,8 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     import numpy as np
 
     from sceneql.flows.schemes.multistep_kernels import ARRAYS
-    from sceneql.flows.schemes.operators_kernels import HEAD, OPERATOR
+    from sceneql.flows.schemes.operator_layout import OPERATOR
+    from sceneql.flows.schemes.operators_kernels import HEAD
 
     flow, operators, velocities, tables, text = operators_of(system)
     head = (*stepper.method.numbers, len(operators), HEAD + OPERATOR * len(operators), velocities)

@@ -4,8 +4,8 @@
 L is the sum over faces of g (neighbor - u) of every field whose g do not vary. ``numbers`` holds, from HEAD on, of each
 operator OPERATOR integers (a field's offset in y, cells along x, y, z, volumes, 0 where nothing is solved, sinks,
 conductances along x, y, z; offsets into the tables of decay rates by mode along x, y, z, and of the length of all
-transforms, the volume of a cell and the sum of its conductances; the entry of y that tells what has come in, or -1; 1
-where the transforms solve it; the plans of the transforms, flows/layout); numbers[OPERATORS] is their number.
+transforms, the volume of a cell and the sum of its conductances; then as in operator_layout); numbers[OPERATORS] is
+their number.
 """
 
 from numba import types
@@ -13,12 +13,12 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.flows.box_modes_kernels import through_modes
 from sceneql.flows.layout import FREE_FREE, FREE_NODES, KIND, NODES, NODES_FREE, PLAN
+from sceneql.flows.schemes.beside_solids_kernels import around, solved_around
+from sceneql.flows.schemes.operator_layout import DECAYS, EXACT, OPERATOR, PLANS_AT, SIZES_AT, TALLY
 from sceneql.grids.multigrid.stencil_kernels import dot, multiply
 from sceneql.system.signatures_kernels import A, F, I, N
 
 OPERATORS, HEAD = 3, 6
-DECAYS, SIZES_AT, TALLY, EXACT, PLANS_AT = 9, 12, 13, 14, 15
-OPERATOR = PLANS_AT + 3 * PLAN
 MOST = 200
 EASY = 20.0
 """Largest decay in a step that the diagonal is the cheaper preconditioner for."""
@@ -149,7 +149,8 @@ def by_modes(op, a, x, floats, tables, scratch, ends):
 def solve(op, a, wanted, y, small, floats, tables, scratch, room):
     """Solve (V - a L) x = V wanted for the entries of an operator, in y, from the values there; where V is 0 they stay.
 
-    On a box of one coefficient by transforms; else by conjugate gradients with these and the own entries of cut cells
+    On a box of one coefficient by transforms; where solids cut few cells by these and conjugate gradients about solids
+    (beside_solids_kernels); else by conjugate gradients with the transforms and the own entries of cut cells
     as preconditioner, or with all own entries where the equations are not stiff. ``small``: the residual, as the
     preconditioner measures it, in parts of wanted. Whether it was reached.
     """
@@ -164,16 +165,27 @@ def solve(op, a, wanted, y, small, floats, tables, scratch, room):
             x[c] = aim[c] if volume[c] > 0.0 else x[c]
         by_modes(op, a, x, floats, tables, scratch, room)
         return True
+    target = before = 0.0
+    for c in range(n):
+        target += volume[c] * aim[c] ** 2
+        p[c] = 0.0
+    box = around(op, a, small, tables)
+    if box[1] > 0:
+        for c in range(n):
+            z[c] = aim[c] if volume[c] > 0.0 else x[c]
+        by_modes(op, a, z, floats, tables, scratch, r)
+        for c in range(n):
+            x[c] = z[c] if volume[c] > 0.0 else x[c]
+        if solved_around(op, a, box, small * small * target, aim, x, volume, sink, gx, gy, gz, r, p, q, own):
+            return True
+        for c in range(n):
+            p[c] = 0.0
     scale = 1.0 / a
     multiply(nx, ny, nz, scale, volume, sink, gx, gy, gz, x, q)
     for c in range(n):
         r[c] = volume[c] * aim[c] - a * q[c] if volume[c] > 0.0 else 0.0
     easy = 2.0 * a * tables[op[SIZES_AT] + 2] < EASY * tables[op[SIZES_AT] + 1]
     diagonal(op, a, easy, floats, tables, own)
-    target = before = 0.0
-    for c in range(n):
-        target += volume[c] * aim[c] ** 2
-        p[c] = 0.0
     for count in range(MOST):
         if not easy:
             precondition(r, z, volume, a, tables, scratch, op)

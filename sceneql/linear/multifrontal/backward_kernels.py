@@ -45,10 +45,10 @@ def substitute(panel, height, k, rows, own):
 def backward_of(plan, factors, x, carried, begin, end):
     """Fronts begin..end of U x = y, parents first."""
     widest()
-    rows = plan[3]
+    rows, at = plan[3], at_front(plan, begin)  # the same numbers for each front, which stay in the cache
     for s in range(end - 1, begin - 1, -1):
         t = layout.HEAD + layout.FIELDS * s
-        first, width, height, at = plan[t], plan[t + 1], plan[t + 2], at_front(plan, s)
+        first, width, height = plan[t], plan[t + 1], plan[t + 2]
         panel, own, row = factors[plan[t + 5] :], carried[at : at + height + layout.PAD], rows + plan[t + 3]
         for j in range(height):
             own[j] = x[plan[row + j]]

@@ -1,8 +1,10 @@
-"""Where coarse and fine cells share a face: the surface's curves on it, from either side. Imports numpy."""
+"""Where coarse and fine cells share a face: the surface's curves on it, from either side. Imports numpy and numba."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
+
+from sceneql.mesh.cubes.border_kernels import follow, mark_borders, open_sides
 
 if TYPE_CHECKING:
     import numpy as np
@@ -12,6 +14,9 @@ if TYPE_CHECKING:
     from sceneql.mesh.cubes.levels import Level, Numbering
 
     Keys = NDArray[np.int64]
+
+LENGTH = 16
+"""Vertices of a curve for which there is room at first."""
 
 
 class Sides(NamedTuple):
@@ -85,8 +90,8 @@ def border_curves(fine: Level, parts: int, numbers: Numbering, chosen: Keys, gro
     """The curves along the border of the fine triangles, of which ``parts`` cells fill a coarse cell's side."""
     import numpy as np
 
-    on_group = np.zeros(len(fine.places), dtype=bool)
-    on_group[: len(fine.doubled)] = (fine.doubled % (2 * parts * group) == 0).any(axis=1)
+    on_edge, on_group = np.zeros((2, len(fine.places)), dtype=bool)
+    mark_borders(fine.doubled, 2 * parts, 2 * parts * group, on_edge, on_group)
     starts, stops = border(fine.triangles, on_group)
     first, last = fine.doubled[starts], fine.doubled[stops]
     across = np.argmax((first == last) & (first % (2 * parts) == 0), axis=1)
@@ -95,20 +100,10 @@ def border_curves(fine: Level, parts: int, numbers: Numbering, chosen: Keys, gro
     low = high.copy()
     low[np.arange(len(low)), across] -= 1
     cells = np.where(among(numbers.of(high // group), chosen)[:, None], low, high)
-    on_edge = (fine.doubled % (2 * parts) == 0).sum(axis=1) == 2
-    following = np.full(len(fine.doubled), -1)
-    # Through a vertex inside a coarse face one curve passes; on a coarse edge several may end.
-    through = ~on_edge[starts]
-    following[starts[through]] = stops[through]
     begins = on_edge[starts]
-    columns = [starts[begins], stops[begins]]
-    while not on_edge[columns[-1]].all():
-        columns.append(np.where(on_edge[columns[-1]], columns[-1], following[columns[-1]]))
-    paths = np.stack(columns, axis=1)
+    paths, followed = _paths(starts, stops, on_edge, int(begins.sum()))
     edges = [_coarse(fine.doubled[paths[:, k]], parts) for k in (0, -1)]
-    followed = np.zeros(len(fine.doubled), dtype=bool)
-    followed[paths] = True
-    rings = through & ~followed[starts]
+    rings = ~begins & ~followed[starts]
     return Curves(
         np.concatenate([paths, np.repeat(starts[rings, None], paths.shape[1], axis=1)]),
         np.concatenate([cells[begins], cells[rings]]),
@@ -138,8 +133,21 @@ def border(triangles: Ints, at: NDArray[np.bool_]) -> tuple[Keys, Keys]:
     """
     import numpy as np
 
-    some = (at[triangles] & at[triangles[:, [1, 2, 0]]]).ravel()
-    starts = triangles.ravel()[some].astype(np.int64)
-    stops = triangles[:, [1, 2, 0]].ravel()[some].astype(np.int64)
-    single = ~np.isin(stops * len(at) + starts, starts * len(at) + stops, assume_unique=True)
-    return stops[single], starts[single]
+    starts, stops = np.empty((2, 3 * len(triangles)), dtype=np.int64)
+    begin, ends = np.zeros(len(at) + 2, dtype=np.int32), np.empty(3 * len(triangles), dtype=np.int32)
+    count = open_sides(triangles, at, begin, ends, starts, stops)
+    return starts[:count], stops[:count]
+
+
+def _paths(starts: Keys, stops: Keys, on_edge: NDArray[np.bool_], count: int) -> tuple[Keys, NDArray[np.bool_]]:
+    """(c, n) vertices of the ``count`` paths from one vertex ``on_edge`` (v,) to the next, padded with the last, and
+    (v,) whether a vertex is on one.
+    """
+    import numpy as np
+
+    room, longest = 0, LENGTH
+    while longest > room:
+        room = longest
+        paths, followed = np.empty((count, room), dtype=np.int64), np.zeros(len(on_edge), dtype=bool)
+        _, longest = follow(starts, stops, on_edge, np.empty(len(on_edge), dtype=np.int32), paths, followed)
+    return np.ascontiguousarray(paths[:, : max(longest, 2)]), followed

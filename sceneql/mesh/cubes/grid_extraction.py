@@ -54,6 +54,8 @@ class Room:
         self.place, self.normal = np.empty((BATCH * EDGES, 3)), np.empty((BATCH * EDGES, 3))
         self.cubes = np.empty((BATCH * BLOCK**3, 2), dtype=np.int32)
         self.local = np.empty(EDGES, dtype=np.int32)
+        self.cells = np.empty((BATCH * BLOCK**3, 3), dtype=np.int32)
+        self.rest, self.seen = np.empty(BATCH * BLOCK**3), np.empty(BATCH * BLOCK**3, dtype=bool)
         self.stack = np.empty((8 * DEEPEST + 8, 4), dtype=np.int64)
         self.second = np.empty((rows, 6))
         self.low, self.fit = np.empty(3), np.empty((15, 3))
@@ -131,7 +133,7 @@ class GridExtraction:
             r, mine = self.room(), blocks[batch * BATCH : (batch + 1) * BATCH]
             tally = np.empty((len(mine), 4), dtype=np.int64)
             most = 0 if deepest == UNLOOKED else len(mine) * BLOCK**3
-            cells, rest, seen = np.empty((most, 3), dtype=np.int32), np.empty(most), np.empty(most, dtype=bool)
+            cells, rest, seen = r.cells[:most], r.rest[:most], r.seen[:most]
             vertices, cubes, doubts = extract(
                 *self.program, r.scratch, r.short, r.near, r.registers, r.slope, r.points, r.starts, r.search,
                 r.values, r.nearest, r.masks, r.corners, r.stack, r.second, self.grid.numbers, mine, table.first,

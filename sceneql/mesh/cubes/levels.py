@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from sceneql.mesh.cubes.border_kernels import double
 from sceneql.mesh.cubes.cases import cases
 from sceneql.mesh.cubes.grid import BLOCK, Grid
 from sceneql.mesh.cubes.grid_extraction import Found, GridExtraction
@@ -33,10 +34,9 @@ class Level:
         """(v, 3) midpoints of the grid edges on which vertices lie, in half cells."""
         import numpy as np
 
-        key = self._found.keys.astype(np.int64)
-        owner = np.repeat(self._found.blocks.astype(np.int64), np.diff(self._found.begin), axis=0)
-        doubled = 2 * (BLOCK * owner + _within(key // 3))
-        doubled[np.arange(len(key)), key % 3] += 1
+        found = self._found
+        doubled = np.empty((len(found.keys), 3), dtype=np.int64)
+        double(found.blocks, found.begin, found.keys, doubled)
         return doubled
 
     @cached_property

@@ -15,6 +15,7 @@ from sceneql.mesh.cubes.faces import Curves, Sides, among, border_curves, face_s
 from sceneql.mesh.cubes.grid import BLOCK, Grid, grid_around
 from sceneql.mesh.cubes.grid_extraction import GridExtraction
 from sceneql.mesh.cubes.hidden_kernels import DEEPEST
+from sceneql.mesh.cubes.kept_blocks import KeptBlocks
 from sceneql.mesh.cubes.levels import Level, Numbering
 from sceneql.mesh.cubes.stitch import stitched
 from sceneql.mesh.cubes.tolerance import distances_off
@@ -117,11 +118,12 @@ def _cut(
 
     group, grid, numbers = BLOCK // parts, shop.grid, Numbering(shop.grid)
     fine_shop = GridExtraction(shop.whole, Grid(grid.low, grid.cell / parts, grid.blocks * parts))
+    kept_blocks = KeptBlocks(fine_shop)
     made = Polygons(coarse.places, coarse.triangles, coarse.normals)
     while 0 < len(groups) <= MOST_GROUPS:
         chosen = np.sort(numbers.of(groups))
         owned = _with_owners(groups)
-        fine = Level(fine_shop, fine_shop.extracted(owned), len(groups))
+        fine = Level(fine_shop, kept_blocks.extracted(owned), len(groups))
         kept = ~among(numbers.of(coarse.cells // group), chosen)
         sides = face_sides(coarse, kept, numbers, chosen, group)
         curves = border_curves(fine, parts, numbers, chosen, group)
@@ -142,6 +144,8 @@ def _left(fine_shop: GridExtraction, groups: Keys, coarse: Level, doubt: Unresol
     """
     import numpy as np
 
+    if not (len(groups) or doubt.cells):
+        return doubt
     group = BLOCK // round(doubt.grid.cell / fine_shop.grid.cell)
     within = coarse.met[among(numbers.of(coarse.met // group), np.sort(numbers.of(groups)))] if len(groups) else groups
     blocks, eighths = _by_eighths(np.concatenate([within, doubt.where]), group)
@@ -212,10 +216,12 @@ def _with_owners(groups: Keys) -> Ints:
     import numpy as np
 
     steps = np.array([[bits & 1, bits >> 1 & 1, bits >> 2] for bits in range(1, 8)])
-    beside = np.unique((groups[:, None] + steps).reshape(-1, 3), axis=0)
-    size = beside.max(axis=0) + 1
-    strides = np.array([1, size[0], size[0] * size[1]])
-    return np.concatenate([groups, beside[~np.isin(beside @ strides, groups @ strides)]]).astype(np.int32)
+    size = groups.max(axis=0) + 2
+    strides = np.array([size[1] * size[2], size[2], 1])  # x first, as rows are sorted
+    own = groups @ strides
+    beside = np.setdiff1d(own[:, None] + steps @ strides, own)
+    places = np.stack([beside // strides[0], beside // strides[1] % size[1], beside % size[2]], axis=1)
+    return np.concatenate([groups, places]).astype(np.int32)
 
 
 def _winding(fine: Level, curves: Curves, cell: float) -> Keys:

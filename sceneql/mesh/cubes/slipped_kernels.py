@@ -138,9 +138,11 @@ def slipped(
     half = BLOCK // 2
     most_bound = max(outer, inner)
     steady = 0.0  # how fast f changes at least along an axis: what it does over each cube
+    turns = False
     for axis in range(3):
         steady = max(steady, max(slopes[2 * axis], -slopes[2 * axis + 1]))
-    if most_bound <= SHALLOW * steady * h:
+        turns = turns or slopes[2 * axis] < 0.0 < slopes[2 * axis + 1]
+    if most_bound <= SHALLOW * steady * h or not turns:
         return count
     for row in range(BLOCK * BLOCK):
         y, z = row % BLOCK, row // BLOCK

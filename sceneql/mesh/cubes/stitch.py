@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from sceneql.field.tape.tape_solid import field_values
 from sceneql.mesh.cubes.connect_kernels import BENT
+from sceneql.mesh.cubes.fan_kernels import center, fan, renumber
 from sceneql.mesh.polygons import Polygons
 from sceneql.mesh.repair.move_vertices import settled, turned_outward
 
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     from sceneql.mesh.cubes.faces import Curves, Sides
     from sceneql.mesh.cubes.levels import Level
 
+    Keys = NDArray[np.int64]
 
 TRIED, HALVINGS = 8, 40
 """Places to either side at which a change of sign is sought, and halvings of what is found."""
@@ -40,39 +40,35 @@ def stitched(tape: Tape, coarse: Level, kept: NDArray[np.bool_], fine: Level, si
     bordering = np.unique(sides.triangles)
     plain = kept.copy()
     plain[bordering] = False
-    inner: defaultdict[int, dict[int, list[int]]] = defaultdict(dict)
-    for triangle, turn, path in zip(sides.triangles.tolist(), sides.turns.tolist(), paths.tolist(), strict=True):
-        inner[triangle][turn] = [vertex + offset for vertex in path[1:] if vertex != path[-1]]
-    fans: list[tuple[int, int, int]] = []
-    middles: list[list[int]] = []
-    fresh = offset + len(fine.places)
-    for triangle, corners in zip(bordering.tolist(), same[coarse.triangles[bordering]].tolist(), strict=True):
-        found = inner[triangle]
-        ring = [vertex for turn in range(3) for vertex in (corners[turn], *found.get(turn, ()))]
-        if len(found) == 1:
-            (turn,) = found
-            apex = corners[(turn + 2) % 3]
-            at = ring.index(apex)
-            ring = ring[at + 1 :] + ring[:at]
-            fans += [(a, b, apex) for a, b in pairwise(ring)]
-        else:
-            apex = fresh + len(middles)
-            middles.append(ring)
-            fans += [(a, b, apex) for a, b in zip(ring, [*ring[1:], ring[0]], strict=True)]
+    fans, rings, begin = _fans(same[coarse.triangles[bordering]], sides, bordering, paths, offset, len(fine.places))
     places, normals = np.concatenate([coarse.places, fine.places]), np.concatenate([coarse.normals, fine.normals])
-    means = np.array([places[ring].mean(axis=0) for ring in middles]).reshape(-1, 3)
-    reach = [np.linalg.norm(places[ring] - mean, axis=1).max() for ring, mean in zip(middles, means, strict=True)]
-    ways = np.array([normals[ring].sum(axis=0) for ring in middles]).reshape(-1, 3)
-    own, slopes = _on_sheets(tape, means, ways, np.array(reach))
-    triangles = np.concatenate(
-        [same[coarse.triangles[plain]], np.array(fans, dtype=np.int64).reshape(-1, 3), fine.triangles + offset]
-    )
-    places, normals = np.concatenate([places, own]), np.concatenate([normals, slopes])
-    used = np.zeros(len(places), dtype=bool)
-    used[triangles] = True
-    triangles = (np.cumsum(used) - 1)[triangles].astype(np.int32)
+    (means, ways), reach = np.empty((2, len(begin) - 1, 3)), np.empty(len(begin) - 1)
+    center(places, normals, rings, begin, means, ways, reach)
+    own, slopes = _on_sheets(tape, means, ways, reach)
+    triangles = np.concatenate([same[coarse.triangles[plain]], fans, fine.triangles + offset])
+    numbers, counted = np.zeros(len(places) + len(own), dtype=np.int32), np.empty(triangles.shape, dtype=np.int32)
+    renumber(triangles, numbers, counted)
+    used = numbers >= 0
+    places, normals = np.concatenate([places, own])[used], np.concatenate([normals, slopes])[used]
     seams = np.arange(plain.sum(), len(triangles) - len(fine.triangles))
-    return turned_outward(tape, Polygons(places[used], triangles, normals[used]), seams)
+    return turned_outward(tape, Polygons(places, counted, normals), seams)
+
+
+def _fans(corners: Keys, sides: Sides, bordering: Keys, paths: Keys, offset: int, fine: int) -> tuple[Keys, Keys, Keys]:
+    """(triangles (n, 3) in place of those of ``corners`` (m, 3), whose rows are ``bordering`` (m,), vertices of the
+    rings around inner vertices, first one of each ring), as the kernel ``fan`` has them.
+
+    ``paths`` (s, n) of the ``sides``; fine vertices are counted from ``offset`` on, there are ``fine``.
+    """
+    import numpy as np
+
+    rows = np.full(corners.shape, -1)
+    rows[np.searchsorted(bordering, sides.triangles), sides.turns] = np.arange(len(paths))
+    room = corners.size + paths.size
+    fans, rings = np.empty((room, 3), dtype=np.int64), np.empty(room, dtype=np.int64)
+    begin = np.zeros(len(corners) + 1, dtype=np.int64)
+    count, inner = fan(corners, rows, paths, offset, offset + fine, fans, rings, begin)
+    return fans[:count], rings, begin[: inner + 1]
 
 
 def _on_sheets(tape: Tape, means: Floats, ways: Floats, reach: Floats) -> tuple[Floats, Floats]:

@@ -29,6 +29,27 @@ def unlike_corners(places, triangles, normals, rows):
     return count
 
 
+@lean("void(float64[:, ::1], int64[:, ::1], float64[:, ::1], float64[::1])")
+def least_cosines(places, triangles, normals, out):
+    """The least cosine between the normals of each triangle and of its vertices into ``out`` (t,).
+
+    At most 1; 0 for a triangle without area, -1 where a vertex has no normal.
+    """
+    for t in range(triangles.shape[0]):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        x, y, z = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1], places[b, 2] - places[a, 2]
+        u, v, w = places[c, 0] - places[a, 0], places[c, 1] - places[a, 1], places[c, 2] - places[a, 2]
+        x, y, z = y * w - z * v, z * u - x * w, x * v - y * u
+        size = (x * x + y * y + z * z) ** 0.5
+        out[t] = 1.0
+        for k in range(3):
+            n = triangles[t, k]
+            cosine = along(normals, n, x, y, z) / size if size > 0.0 else 0.0
+            if normals[n, 0] == 0.0 and normals[n, 1] == 0.0 and normals[n, 2] == 0.0:
+                cosine = -1.0
+            out[t] = min(out[t], cosine)
+
+
 @lean("void(int32[:, ::1], int64[::1], int32[::1], uint8[::1], int64[::1])")
 def count_edges(triangles, begin, ends, met, found):
     """Numbers into ``found`` (4,): edges, edges of only one triangle, of more than two, and vertices of triangles.

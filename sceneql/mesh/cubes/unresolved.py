@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.compiled.kernels import over_tiles
 from sceneql.mesh.bounded import Corner, bounded
-from sceneql.mesh.cubes.grid import BLOCK, grid_around
+from sceneql.mesh.cubes.grid import grid_around
 from sceneql.mesh.cubes.grid_extraction import BATCH, GridExtraction, joined
 from sceneql.mesh.cubes.hidden_kernels import DEEPEST, hidden
 
@@ -79,8 +79,7 @@ def hidden_in(
 
     def work(batch: int) -> None:
         r, mine = shop.room(), blocks[batch * BATCH : (batch + 1) * BATCH]
-        most = len(mine) * BLOCK**3
-        cells, rest, seen = np.empty((most, 3), dtype=np.int32), np.empty(most), np.empty(most, dtype=bool)
+        cells, rest, seen = r.cells, r.rest, r.seen
         n = hidden(
             *shop.program, r.scratch, r.short, r.near, r.registers, r.points, r.values, r.nearest, r.stack,
             r.second, shop.grid.numbers, mine,

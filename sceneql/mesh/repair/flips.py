@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sceneql.field.tape.tape_solid import many_gradients
+from sceneql.mesh.cubes.triangle_kernels import least_cosines
 from sceneql.mesh.polygons import touched
 from sceneql.mesh.repair.move_kernels import SLIVER
 
@@ -92,13 +93,8 @@ def _by_vertices(polygons: Polygons, triangles: NDArray[np.integer]) -> Floats:
     """(t,) the least cosine between normals of triangles (t, 3) and of their vertices; -1 where one has none."""
     import numpy as np
 
-    corners, slopes = polygons.vertices[triangles], polygons.normals[triangles]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    sizes = np.linalg.norm(across, axis=1)[:, None]
-    dots = np.einsum("tj,tkj->tk", across, slopes)
-    cosines = np.divide(dots, sizes, out=np.zeros_like(dots), where=sizes > 0.0)
-    cosines[(slopes == 0.0).all(axis=2)] = -1.0
-    least: Floats = cosines.min(axis=1, initial=1.0)
+    least: Floats = np.empty(len(triangles))
+    least_cosines(polygons.vertices, np.ascontiguousarray(triangles, dtype=np.int64), polygons.normals, least)
     return least
 
 

@@ -59,9 +59,11 @@ def turned_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Polygons:
     near = np.zeros(len(places), dtype=bool)
     near[triangles[doubtful]] = True
     doubtful = np.flatnonzero(touched(near, triangles))
+    facing_in, still = inward(tape, found, triangles[doubtful]), set[int]()
+    if not facing_in.any():
+        return found
     near[triangles[doubtful]] = True
     stars = Stars(triangles[touched(near, triangles)])
-    facing_in, still = inward(tape, found, triangles[doubtful]), set[int]()
     for _ in range(ROUNDS):
         turned = doubtful[facing_in]
         if len(turned) > MOST:

@@ -5,6 +5,7 @@ Imports numpy and numba.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from sceneql.mesh.polygons import Polygons, touched
@@ -40,7 +41,7 @@ def unfolded(tape: Tape, polygons: Polygons) -> Polygons:
 
     rows = overturned(tape, polygons)
     if not 0 < len(rows) <= MOST:
-        return polygons
+        return replace(polygons, unfolded=not len(rows))
     near = np.zeros(len(polygons.vertices), dtype=bool)
     near[polygons.triangles[rows]] = True
     for _ in range(RINGS):

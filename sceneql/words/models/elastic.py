@@ -16,7 +16,8 @@ from sceneql.bodies.elements import strain_outputs
 from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.hold import Hold
 from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws, number
-from sceneql.bodies.elements.load import Load
+from sceneql.bodies.elements.load import Load, parts_on_lines
+from sceneql.bodies.elements.named import SAID
 from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
 from sceneql.bodies.filling.block import Block
 from sceneql.bodies.filling.finer import Finer
@@ -80,13 +81,7 @@ class Elastic(Resized, Model):
     """
 
     gives: ClassVar[Mapping[str, Gives]] = {**masses.BODY_OUTPUTS, **OUTPUTS, **solid_modes.OUTPUTS}
-    said_by: ClassVar[Mapping[str, str]] = {
-        **dict.fromkeys(
-            ("modulus", "young", "youngs_modulus", "stiffness", "poisson", "poisson_ratio"),
-            "a law has it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`",
-        ),
-        **dict.fromkeys(("mass", "weight"), "write its density, `density: 1000 kg/m^3`"),
-    }
+    said_by: ClassVar[Mapping[str, str]] = SAID
     has_skin: ClassVar[bool] = True
 
     of: kinds.ObjectRef | None = field(
@@ -266,13 +261,13 @@ class Elastic(Resized, Model):
         """Its mesh. Raises ScriptError for an object that cannot be filled, LimitRefused for too many elements."""
         from sceneql.bodies.elements.filled import filled, laid, of_file
 
-        element = self.chosen_element()
+        element, parts = self.chosen_element(), parts_on_lines(self.hold, self.loads)
         if self.block is not None:
-            return laid(self.block, element, self.finer, assembly)
+            return laid(self.block, element, self.finer, assembly, parts)
         if self.file is not None:
-            return of_file(self.file, element, self.finer, assembly)
+            return of_file(self.file, element, self.finer, assembly, parts)
         assert self.of is not None
-        return filled(self.of, self.spacing, element, self.finer, assembly, self.turn if element.edges else None)
+        return filled(self.of, self.spacing, element, self.finer, assembly, self.turn if element.edges else None, parts)
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the nodes as masses; add the forces of strain, of loads, of damping, and what holds it."""
@@ -300,7 +295,7 @@ class Elastic(Resized, Model):
         held: Any = np.zeros((count, 3), dtype=bool)
         nodes, whole, glued = {}, np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         for called, hold in self.hold.items():
-            some = holding.chosen(called, hold, mesh.points, assembly, line)
+            some = holding.chosen(called, hold, mesh, assembly, line)
             some = nodes[called] = some[~held[some][:, hold.axes()].any(axis=1)]
             held[np.ix_(some, hold.axes())] = True
             whole[some] |= len(hold.axes()) == len(AXES)
@@ -353,7 +348,7 @@ class Elastic(Resized, Model):
         mesh, (least, largest) = self.solid.mesh, self._made.angles
         called = next(name for name, one in elements().items() if one is mesh.element)
         told = f"{len(mesh.cells)} elements {called} of {len(mesh.points)} nodes"
-        told += f", angles between faces {np.degrees(least):.0f} to {np.degrees(largest):.0f} degrees"
+        told += f", angles between faces {np.degrees(least):.0f} to {np.degrees(largest):.0f} degrees{mesh.told()}"
         told += f"; no oscillation is faster than {self.solid.squared**0.5 / (2 * np.pi):.4g} Hz in the small"
         corners = mesh.points[mesh.cells[[self.solid.stiffest], :4]]
         sharpest, _ = worst_angle(corners[0], np.arange(4, dtype=np.int32)[None])

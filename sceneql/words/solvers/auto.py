@@ -157,7 +157,7 @@ class Auto(Solver):
         coarser = type(self)(tolerance=round(min(COARSER * self.tolerance, 0.1), 16), absolute=self.absolute)
         absolute = self.absolute or coarser.tolerance * min(1.0, island.solids_size)
         stiff = TrBdf2(tolerance=coarser.tolerance, absolute=absolute).stepper()
-        there = f"elastic solids are marched at a tolerance of {coarser.tolerance:g}"
+        there = f"elastic solids at a tolerance of {coarser.tolerance:g}, by tr_bdf2, not radau, where they are stiff"
         return Methods(
             coarser,
             coarser.stepper(),
