@@ -115,7 +115,8 @@ def test_a_motor_goes_to_an_angle_and_holds_it_against_a_load(tmp_path, solver):
     for angle, speed, effort in rows[1:]:
         assert angle == pytest.approx(np.pi / 2, abs=1e-7 if solver == "auto" else 1e-9)
         assert abs(speed) < (1e-6 if solver == "auto" else 1e-8)
-        assert effort == pytest.approx(1, abs=1e-6 if solver == "auto" else 1e-7)
+        # 0.25 kg m^2 come to rest within 0.1 s: what the angle is off makes a torque of 25 N m/rad
+        assert effort == pytest.approx(1, abs=2.5e-6 if solver == "auto" else 1e-7)
 
 
 def test_a_motor_follows_an_angle_in_time(tmp_path):
