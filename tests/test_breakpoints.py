@@ -436,3 +436,22 @@ clock: {{end: 10 s}}
 """
     ((height,),) = watch(tmp_path, script, [10.0], "pond.mean")
     assert height == pytest.approx(10 - 3.005, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("expr", "leaps", "bends"),
+    [
+        (call("floor", call("div", TIME, number(4.0))), 4.0, 4.0),
+        (call("abs", call("sub", TIME, number(3.0))), None, 3.0),
+        (call("max", number(0.0), call("sub", call("sin", TIME), number(2.0))), None, None),
+        (call("mul", TIME, TIME), None, None),
+        (call("sin", call("mul", number(30.0), TIME)), None, None),
+        (call("abs", call("pow", call("sub", TIME, number(3.0)), number(3.0))), None, None),
+        (keys(), None, None),
+    ],
+    ids=["floor", "abs", "never", "square", "sine", "touching", "keys"],
+)
+def test_jumps_of_formulas_and_of_their_slopes_are_told(expr, leaps, bends):
+    for wanted, bent in ((leaps, False), (bends, True)):
+        at = Breakpoints(lambda link: None, 10.0).leap(expr, bends=bent)
+        assert at == (wanted if wanted is None else pytest.approx(wanted, abs=1e-12))

@@ -44,6 +44,19 @@ def test_a_line_between_the_nodes_of_a_block_is_held_whole(tmp_path, element, no
         assert (moves[on][:, axes] == 0.0).all()
 
 
+def test_a_line_that_others_cross_and_points_stand_on_is_held_whole(tmp_path):
+    hold = "hold: {a: {where: (x == 0.03)*(y == 0.1)}, p: {near: 0.03 0.1 -0.11 m, components: x}, "
+    hold += "c: {where: (z == 0.02)*(y == 0.1), components: y}}"
+    solid = Solid(tmp_path, f"{{{BAR}, element: p2, {LAW}, {hold}}}")
+    whole(solid, 0.06, 3)
+    for name, length in (("hold a", 0.3), ("hold c", 1.0)):
+        edges = solid.mesh.points[solid.mesh.lines[name].edges]
+        assert np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1).sum() == pytest.approx(length, rel=1e-12)
+    x, y, _ = solid.mesh.points.T
+    along = (np.abs(x - 0.03) < 1e-9) & (np.abs(y - 0.1) < 1e-9)
+    assert solid.bodies.skin.held[along].all()
+
+
 def test_where_nodes_stand_a_line_or_a_face_is_held_by_these_alone(tmp_path):
     hold = "hold: {a: {where: x == -0.5}, b: {where: (x == 0.1)*(y == 0.1)}, c: {near: 0.3 0.1 0.05 m}}"
     solid = Solid(tmp_path, f"{{{BAR}, element: p2, {LAW}, {hold}}}")

@@ -115,7 +115,8 @@ def test_a_motor_goes_to_an_angle_and_holds_it_against_a_load(tmp_path, solver):
     for angle, speed, effort in rows[1:]:
         assert angle == pytest.approx(np.pi / 2, abs=1e-7 if solver == "auto" else 1e-9)
         assert abs(speed) < (1e-6 if solver == "auto" else 1e-8)
-        assert effort == pytest.approx(1, abs=1e-6 if solver == "auto" else 1e-7)
+        # 0.25 kg m^2 come to rest within 0.1 s: what the angle is off makes a torque of 25 N m/rad
+        assert effort == pytest.approx(1, abs=2.5e-6 if solver == "auto" else 1e-7)
 
 
 def test_a_motor_follows_an_angle_in_time(tmp_path):
@@ -571,3 +572,25 @@ solvers: {main: {rk4: {step: 1 ms}}}
     for time in (0, 2):
         watched.look(run.at(time), last=time == 2)
     assert watched.warnings() == ()
+
+
+@pytest.mark.parametrize(
+    ("target", "angle"),
+    [
+        ("speed: '0.3 rad/s*floor(2*time/(1 s))'", 0.3 * 0.5 * (0 + 1 + 2)),
+        ("angle: '0.3*abs(mod(time/(1 s), 2) - 1)'", 0.15),
+    ],
+)
+def test_a_motor_whose_speed_jumps_is_followed_in_steps(tmp_path, target, angle):
+    """At a jump it slips for 0.3 or 0.6 rad/s over some 100 rad/s^2; no event tells when that begins."""
+    script = f"""
+clock: {{end: 3 s, fps: 2}}
+models: {{a: {{rigid: {{mass: 1 kg, inertia: 1e-3 0.1 0.1 kg*m^2, position: 0.5 0 0 m}}}}}}
+forces: [gravity]
+ties:
+  u: {{hinge: {{between: [a, world], at: 0 0 0 m, axis: 0 0 1, motor: {{{target}, torque: 40 N*m}}}}}}
+"""
+    ((found,),) = watch(tmp_path, script, [1.5], "u.angle")
+    assert found == pytest.approx(angle, abs=2e-3)
+    said = text(explain(load(tmp_path / "scene.yaml", pruned=False)))
+    assert "its motor acts on the velocities at the end of a step (mode local)" in said

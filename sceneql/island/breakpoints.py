@@ -33,6 +33,10 @@ FALLEN = (1.0, 4.0, 12.0, 30.0)
 """Drops of a pulse's logarithm below its maximum at which breakpoints are set, so that steps resolve its flanks."""
 MOST_BELLS = 1000
 """Largest number of bells of a formula that become breakpoints: the error estimate sees an oscillation with more."""
+NEAR = 1e-6
+"""Distance of the places, as a share of the run, by which values and slopes at both sides of a breakpoint are told."""
+LEAP, BEND = 1e-5, 1e-2
+"""Least jumps of a formula and of its slope, as shares of the largest of the run, that count as such."""
 PARTS = 32
 """Number of subintervals into which an interval with a change is divided, recursively."""
 
@@ -81,6 +85,29 @@ class Breakpoints:
                 self.beyond.append(node.span or span)
             else:
                 self.stops.update(found)
+
+    @np.errstate(all="ignore")
+    def leap(self, expr: Expr, bends: bool) -> float | None:
+        """The first instant [s] in the run at which a formula of time jumps, or if it ``bends`` its slope; None: none.
+
+        The start of the run where there are too many breakpoints to tell.
+        """
+        self.follow(expr)
+        if self.beyond:
+            return 0.0
+        near, end = NEAR * self.end, self.end
+        times = np.unique([time for stop in self.stops for time in _again(stop, end)])
+        times = times[(times > 2.0 * near) & (times < end - 2.0 * near)]
+        every = self._values(expr, np.linspace(0.0, end, SAMPLES[0] + 1))
+        sides = [self._values(expr, times + k * near) for k in (-2, -1, 1, 2)]
+        if every is None or any(side is None for side in sides):
+            return None
+        first, before, behind, last = np.array(sides)
+        leaps = np.abs(2.0 * behind - last - 2.0 * before + first) > LEAP * np.abs(every).max()
+        if bends:
+            steepest = np.abs(np.diff(every)).max() * SAMPLES[0] * NEAR
+            leaps |= np.abs(last - behind - before + first) > BEND * steepest
+        return float(times[leaps][0]) if leaps.any() else None
 
     def _below(self, expr: Expr) -> tuple[Expr, ...]:
         if not isinstance(expr, Link):

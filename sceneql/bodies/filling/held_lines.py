@@ -114,8 +114,10 @@ class Lines:
             if before == (split.added, split.moved):
                 inside.add(name)
         found: dict[str, Any] = {name: split.pierce(place, size, more) for name, place in self.points.items()}
-        count = len(split.points)
-        found |= {name: np.concatenate([one, np.zeros(count - len(one), dtype=bool)]) for name, one in on.items()}
+        for name, one in on.items():
+            later = split.standing(self.lines[name])  # where other lines cross it, and points stand on it
+            later[: len(one)] = one
+            found[name] = later
         put = split.added, split.moved
         return Cut(split.points, split.cells.astype(cells.dtype), split.parents, found, frozenset(inside), put)
 

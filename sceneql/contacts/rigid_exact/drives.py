@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from sceneql.bodies.rigid.tie_system import integers
 from sceneql.bodies.rigid.tied_step import drive_integers, moves
 from sceneql.bodies.time_shift import exact_rate, rate_of_change
+from sceneql.island.breakpoints import Breakpoints
 from sceneql.kinds import Value
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.system import Place
@@ -28,7 +29,7 @@ def drives_of(
     """Floats (stop_kernels) and integers (motion_kernels) of the ties with stops, a motor or friction.
 
     Adds the tied bodies to ``movers`` and ``works``, and marks the assembly as driven, so that no velocity step moves
-    these ties. Raises ScriptError for a motor whose target has no known rate.
+    these ties. Raises ScriptError for a motor whose target has no known rate, or jumps.
     """
     from sceneql.bodies.rigid.drive_kernels import ROW_AT
     from sceneql.bodies.rigid.tie_rows_kernels import AT_J, SCRATCH
@@ -62,7 +63,10 @@ def drives_of(
 
 
 def _rates(tie: Tied, drive: Drive, assembly: Assembly) -> tuple[int, int]:
-    """Offsets of the first and second time derivatives of a motor's target; -1 if it is constant."""
+    """Offsets of the first and second time derivatives of a motor's target; -1 if it is constant.
+
+    Raises ScriptError for one whose speed jumps: no gap tells the instant at which the motor has to let go.
+    """
     target = drive.target
     if target is None or target.constant:
         return -1, -1
@@ -72,6 +76,9 @@ def _rates(tie: Tied, drive: Drive, assembly: Assembly) -> tuple[int, int]:
 
     try:
         first = rate(target.expr)
+        leap = Breakpoints(assembly.formula, assembly.end).leap(target.expr, bends=drive.follows != "speed")
+        if leap is not None:
+            raise ValueError(f"its speed jumps at {leap:.6g} s")
         return assembly.value(Value(first, target.span)), assembly.value(Value(rate(first), target.span))
     except ValueError as error:
         message = f"it cannot be told how what the motor of '{tie.name}' follows changes: {error}"

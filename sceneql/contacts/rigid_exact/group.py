@@ -170,7 +170,7 @@ def assemble_drives(assembly: Assembly) -> bool:
     none = Value(Number(0.0))
     try:
         assemble(assembly, (), (), none, none, none, gives_way=True)
-    except ScriptError:  # a motor that follows what has no known rate
+    except ScriptError:  # a motor that follows what has no known rate, or jumps
         return False
     return True
 
