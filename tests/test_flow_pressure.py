@@ -66,11 +66,22 @@ def test_iterations_on_cells_near_solids_come_to_what_factors_do(tmp_path, place
     assert found[0].at(0.05).read("velocity") == pytest.approx(known, abs=1e-9 * np.abs(known).max())
 
 
+@pytest.mark.parametrize(
+    ("place", "viscosity"), [("0.5 0.45", 0.01), ("0.5 0.085", 0.002)], ids=["free", "on the floor"]
+)
 @pytest.mark.parametrize("solver", ["{sbdf2: {step: 2 ms}}", "{ark3: {step: 2 ms}}"])
-def test_viscosity_about_a_small_solid_comes_to_what_iterations_on_all_cells_do(tmp_path, monkeypatch, solver):
+def test_viscosity_about_a_small_solid_comes_to_what_iterations_on_all_cells_do(
+    tmp_path, monkeypatch, solver, place, viscosity
+):
     """Transforms find it elsewhere: but for rounding and for what either leaves, it is the same flow."""
-    stone = STONE.replace("0.2 m", "0.08 m")
-    fields = {"cell": "1/64 m", "viscosity": "0.01 Pa*s", "before": stone, "around": "[stone]", "boundary": THROUGH}
+    stone = STONE.replace("0.2 m", "0.08 m").replace("0.5 0.45", place)
+    fields = {
+        "cell": "1/64 m",
+        "viscosity": f"{viscosity} Pa*s",
+        "before": stone,
+        "around": "[stone]",
+        "boundary": THROUGH,
+    }
     near = Air(tmp_path, solver, 0.01, **fields).at(0.01).read("velocity")
     monkeypatch.setattr(multistep, "_extent", lambda odd: [-1] * 6)
     known = Air(tmp_path, solver, 0.01, **fields).at(0.01).read("velocity")

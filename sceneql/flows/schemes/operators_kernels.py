@@ -138,7 +138,8 @@ def by_modes(op, a, x, floats, tables, scratch, ends):
                         x[end] = ends[kept]
                     else:
                         beside = end + stride if way == 0 else end - stride
-                        x[beside] += a * ties[beside if way == 0 else end] * x[end] / volume[beside]
+                        if volume[beside] > 0.0:  # a solid may stand there
+                            x[beside] += a * ties[beside if way == 0 else end] * x[end] / volume[beside]
                         ends[kept], x[end] = x[end], 0.0
                     kept += 1
         if back == 0:
