@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sceneql.bodies.elements.element_mesh import unit
 from sceneql.bodies.filling.tetrahedra import FACES, boundary
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ class Outer:
         """
         faces = boundary(cells).astype(np.int64)
         a, b, c = (points[faces[:, k]] for k in range(3))
-        across = _unit(np.cross(b - a, c - a))
+        across = unit(np.cross(b - a, c - a))
         size, count = len(points), len(faces)
         ends = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
         tips = np.concatenate([faces[:, 2], faces[:, 0], faces[:, 1]])
@@ -59,8 +60,8 @@ class Outer:
         fixed[np.concatenate(np.divmod(keys[many != 2], size))] = True
         beside, sides = pairs % count, points[tips[pairs]] - points[ends[pairs[:, 0], 0]][:, None]
         ends = ends[pairs[:, 0]]
-        way = _unit(points[ends[:, 1]] - points[ends[:, 0]])
-        sides = _unit(sides - np.einsum("kji,ki->kj", sides, way)[..., None] * way[:, None])
+        way = unit(points[ends[:, 1]] - points[ends[:, 0]])
+        sides = unit(sides - np.einsum("kji,ki->kj", sides, way)[..., None] * way[:, None])
         one, two = across[beside[:, 0]], across[beside[:, 1]]
         sharp = np.einsum("ki,ki->k", one, two) < (1.0 - STRAIGHT if cosine is None else cosine)
         met, pull = np.bincount(ends[sharp].ravel(), minlength=size), np.zeros((size, 3))
@@ -83,8 +84,3 @@ class Outer:
         all_of = keys(cells[:, FACES].reshape(-1, 3).astype(np.int64))
         order = np.argsort(all_of, kind="stable")
         return order[np.searchsorted(all_of[order], keys(self.faces))] // len(FACES)
-
-
-def _unit(vectors: Floats) -> Floats:
-    found: Floats = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
-    return found

@@ -21,9 +21,10 @@ from numba import types
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
+from sceneql.compiled.vectors_kernels import same
 from sceneql.flows.layout import AT, CHANGE, FACES, INVERSES, LED, RATE, SKIP, VELOCITY, WORK
 from sceneql.flows.projection_kernels import project
-from sceneql.flows.schemes.operators_kernels import OPERATOR, same, solve, spread, tally
+from sceneql.flows.schemes.operators_kernels import OPERATOR, solve, spread, tally
 from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I, N
 
 STAGES, FLOW_AT, BLOCKS, AXES, OPERATORS, TABLES_AT, HEAD = range(7)

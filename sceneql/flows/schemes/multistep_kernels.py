@@ -17,6 +17,7 @@ import math
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
+from sceneql.compiled.vectors_kernels import same
 from sceneql.flows.layout import AT, CELLS, ITERATES, PRESSURE, SKIP, VELOCITY, WORK
 from sceneql.flows.projection_kernels import by_transform_of_rows, less_gradient, outflow, project, rid
 from sceneql.flows.schemes.bands_kernels import explicit, finish, gather
@@ -27,7 +28,6 @@ from sceneql.flows.schemes.operators_kernels import (
     OPERATORS,
     add_spread,
     by_modes,
-    same,
     solve,
     tally,
 )

@@ -24,15 +24,6 @@ EASY = 20.0
 """Largest decay in a step that the diagonal is the cheaper preconditioner for."""
 
 
-@lean_inlined
-def same(x, y):
-    """Whether all entries are equal."""
-    for k in range(x.size):
-        if x[k] != y[k]:
-            return False
-    return True
-
-
 @lean(types.void(A, A, N, N, A, I), inner=True)
 def spread(y, out, first, last, floats, numbers):
     """out = L y where the operators from ``first`` to before ``last`` act."""

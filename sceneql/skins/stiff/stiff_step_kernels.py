@@ -20,6 +20,7 @@ from numba import types
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
+from sceneql.compiled.vectors_kernels import same
 from sceneql.flows.layout import AT, CHANGE, FACES, RATE, SKIP, VELOCITY, WORK
 from sceneql.flows.projection_kernels import project
 from sceneql.flows.schemes.additive_kernels import (
@@ -38,7 +39,7 @@ from sceneql.flows.schemes.additive_kernels import (
     quiet,
     worst_error,
 )
-from sceneql.flows.schemes.operators_kernels import OPERATOR, same, solve, spread, tally
+from sceneql.flows.schemes.operators_kernels import OPERATOR, solve, spread, tally
 from sceneql.grids.multigrid.stencil_kernels import dot
 from sceneql.skins.stiff.stiff_lines_kernels import (
     SIDES,

@@ -21,6 +21,7 @@ from numba import types
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
+from sceneql.compiled.vectors_kernels import same
 from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I, N
 
 MOST = 12
@@ -43,15 +44,6 @@ GROWTH, MOST_GROWTH = 1.05, 2.0
 """Factor below which steps do not grow, as changes of length cost accuracy; largest factor."""
 LOW_ORDER_AT = 3
 """Failed tries of a step after which it begins anew with order 2: the rate has jumped."""
-
-
-@lean_inlined
-def same(x, y):
-    """Whether all entries are equal."""
-    for k in range(x.size):
-        if x[k] != y[k]:
-            return False
-    return True
 
 
 @lean(types.void(F, F, N, A), inner=True)

@@ -14,6 +14,7 @@ import math
 
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.vectors_kernels import same
 from sceneql.linear.newton_kernels import MEMORY, newton, norm
 from sceneql.linear.stage_kernels import solve_stage
 from sceneql.system.signatures_kernels import STEP
@@ -24,15 +25,6 @@ SCALES_AT = MEMORY + 3
 ARRAYS = 10
 LONGEST = 2.0
 """Growth of a step: the formula is stable for sequences that grow by less than 1 + sqrt 2 (Grigorieff 1983)."""
-
-
-@lean_inlined
-def same(x, y):
-    """Whether all entries are equal."""
-    for k in range(x.size):
-        if x[k] != y[k]:
-            return False
-    return True
 
 
 @lean_inlined

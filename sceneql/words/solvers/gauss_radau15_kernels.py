@@ -15,6 +15,7 @@ import math
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
+from sceneql.compiled.vectors_kernels import same
 from sceneql.system.signatures_kernels import DENSE, STEP
 
 CONTROLLED, PUSHED, POSITIONS, GROUPS, ENTRIES = range(5)
@@ -49,15 +50,6 @@ NEGLIGIBLE = 1e-12
 largest of the numbers that are moved so."""
 SHRINKAGE = 0.25
 """A step is taken again when the next would be shorter than this times it (Rein & Spiegel 2015, section 2.3)."""
-
-
-@lean_inlined
-def same(a, b):
-    """Whether two vectors are equal."""
-    for k in range(a.size):
-        if a[k] != b[k]:
-            return False
-    return True
 
 
 @lean_inlined
