@@ -203,17 +203,36 @@ class Limit:
 
     passed = False
     doing = ""
+    _told = False
+
+    def __init__(self, timer: threading.Timer | None = None) -> None:
+        self._timer = timer
+
+    def begin(self) -> None:
+        """Count from here on."""
+        if self._timer is not None:
+            self._timer.start()
+
+    def look(self) -> None:
+        """Raise KeyboardInterrupt if it has passed: once, so that its signal raises none after that."""
+        if self.passed:
+            self._told = True
+            raise KeyboardInterrupt
+
+    def press(self, number: int, frame: FrameType | None) -> None:
+        """Handle its signal, which may come after `look` has told."""
+        if not self._told:
+            _press(number, frame)
 
 
 @contextmanager
 def within(seconds: float | None, doing: Callable[[], str]) -> Iterator[Limit]:
-    """When the block has taken so many seconds KeyboardInterrupt is raised in it, as by a signal; None: never.
+    """So many seconds after `Limit.begin` KeyboardInterrupt is raised in the block, as by a signal; None: never.
 
     ``doing`` tells what is done then. Signals are handled on the main thread alone.
     """
-    limit = Limit()
     if seconds is None:
-        yield limit
+        yield Limit()
         return
     number = getattr(signal, "SIGALRM", signal.SIGINT)
 
@@ -223,9 +242,9 @@ def within(seconds: float | None, doing: Callable[[], str]) -> Iterator[Limit]:
 
     timer = threading.Timer(min(seconds, threading.TIMEOUT_MAX), end)
     timer.daemon = True
+    limit = Limit(timer)
     with raised():
-        before = signal.signal(number, _press)
-        timer.start()
+        before = signal.signal(number, limit.press)
         try:
             yield limit
         finally:

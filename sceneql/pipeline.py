@@ -133,6 +133,7 @@ def render(
     late = ending.enter_context(within(limit, lambda: doing.now(0.0)))
     ending.enter_context(keeping(lambda: [*report.files, *_kept(sinks, KeyboardInterrupt())]))
     try:
+        late.begin()
         for name, kind in outputs.items():
             if isinstance(kind, Picture):
                 tools[name].prepare(kind)
@@ -153,8 +154,7 @@ def render(
         busy = solving = _Busy("solving", parts)
         for done, moment in enumerate(run.moments(instants)):
             progress(done, len(instants))
-            if late.passed:  # told where it was lost, as signals are in callbacks of a C library
-                raise KeyboardInterrupt
+            late.look()  # its signal is lost in a callback of a C library
             if done == 1:
                 gc.freeze()  # what lives by now lives on, and is not looked over in every collection
             watch.look(moment, last=done == len(instants) - 1)

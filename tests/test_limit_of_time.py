@@ -61,6 +61,15 @@ def test_where_nothing_is_simulated_the_limit_ends_an_output(tmp_path):
     assert (found.value.part, found.value.span.line) == ("film", 3)
 
 
+def test_the_signal_of_a_limit_that_has_been_told_raises_nothing():
+    """It came in what follows, as of keeping files, where a lock held it up or a C library had lost it."""
+    with interrupts.within(300.0, lambda: "waiting") as limit:
+        limit.passed = True  # and its signal is late
+        with pytest.raises(KeyboardInterrupt):
+            limit.look()
+        signal.raise_signal(signal.SIGALRM)
+
+
 def test_a_film_that_takes_too_long_keeps_its_frames(tmp_path):
     path = written(tmp_path, FILM)
     pipeline.render(pipeline.load(path, sets=["clock.end=0.1 s"]), folder=tmp_path)  # what is compiled is compiled
