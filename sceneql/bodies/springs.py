@@ -194,6 +194,7 @@ class SpringModel(Model):
         """Reserve the masses and add the forces of the springs."""
         import numpy as np
 
+        from sceneql.bodies.net_faces import faces_of
         from sceneql.system import Springs
 
         net, weights, blocks = self.make(assembly)
@@ -242,7 +243,9 @@ class SpringModel(Model):
         stiffnesses = blocks[:, 1] + blocks[:, 2] * assembly.numbers()[stiffness_at]
         period = _shortest_period(net.pairs, stiffnesses, weights)
         dampings = blocks[:, 3] + blocks[:, 4] * assembly.numbers()[damping_at]
-        return replace(bodies, springs=Springs(net.pairs, np.stack([stiffnesses, dampings]), period))
+        faces = None if self.tear is not None else faces_of(net, stiffnesses, self.mass_radius())
+        springs = Springs(net.pairs, np.stack([stiffnesses, dampings]), period)
+        return replace(bodies, springs=springs, faces=faces)
 
     def holding(self, state: ModelState) -> Any:
         """Mask (m,) of the springs that have not torn."""

@@ -43,7 +43,6 @@ class Model(Kind):
     """Whether forces that name no model act on it."""
     has_skin: ClassVar[bool] = False
     """Whether its masses are vertices of a surface: all models of a contact with it are then solved together."""
-
     carried: ClassVar[bool] = False
     """Whether it is a skin without inertia that a flow carries (system.Membrane)."""
     immersible: ClassVar[bool] = False
@@ -116,6 +115,10 @@ class Model(Kind):
     def fluid(self) -> tuple[float, float] | None:
         """Density [kg/m^3] and viscosity [Pa s] of the fluid inside it; None where it is the flow's own fluid."""
         return None
+
+    def faceless(self) -> str:
+        """Why contacts beside elastic solids do not take its masses; empty where they do: vertices of lasting faces."""
+        return "has no faces"
 
     def fillings(self) -> Iterable[tuple[Ref, Callable[[Floats, Floats], None]]]:
         """Objects that it fills at a spacing, each with a function of the corners (3,) [m] of the object's box."""
@@ -347,8 +350,7 @@ class Contact(Kind):
     family: ClassVar[str] = "contacts"
     also_under: ClassVar[str] = "forces"
     mutual: ClassVar[bool] = False
-    """Whether it acts between all masses of its models: these are solved together, and it is assembled for all at
-    once."""
+    """Whether it acts between all masses of its models, which are solved together: it is assembled once for all."""
 
     def ties(self) -> tuple[Ref, ...]:
         """The models and objects that it acts between; empty: all models and the floor."""

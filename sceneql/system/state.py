@@ -38,7 +38,7 @@ class Skin:
     held: Any
     """(bodies, 3) bool: components of the position that do not move freely."""
     stiffness: float
-    """The solid's elastic modulus [Pa]: about the pressure at which a barrier contact closes half its gap."""
+    """The elastic modulus of what it covers [Pa]: about the pressure at which a barrier closes half its gap."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,6 +86,8 @@ class Bodies:
     """How they turn; None for point masses."""
     skin: Skin | None = None
     """Their surface, where they are vertices of a solid; None for masses alone."""
+    faces: Skin | None = None
+    """The surface of a net of springs, for contacts by a barrier; None without."""
     immersed: Immersed | None = None
     """These masses as carried by a flow, whose velocity at their positions is theirs; None where no flow carries
     them."""

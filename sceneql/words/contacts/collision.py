@@ -239,11 +239,13 @@ class Collision(Contact):
                 yield Diagnostic("no-collider", message, written, "name under `between` what may touch, without it")
             models = {name: model for name, model in models.items() if not model.carried}
         soft = self.mode in ("auto", "barrier") and any(model.has_skin for model in models.values())
-        hard = next((name for name, model in models.items() if not (model.has_skin or model.turns)), None)
+        whys = {name: "" if model.has_skin or model.turns else model.faceless() for name, model in models.items()}
+        hard = next((name for name, why in whys.items() if why), None)
         if soft and hard is not None:
-            message = f"'{hard}' does not collide together with elastic solids yet"
+            from sceneql.contacts.barrier.refused import beside_solids
+
             written = next((ref.span for ref in self.between or () if ref.name == hard), None)
-            yield Diagnostic("no-collider", message, written, "name under `between` what may touch, without it")
+            yield beside_solids(hard, whys[hard], written)
         if soft and self.restitution.span is not None:
             yield Diagnostic("no-restitution", NO_RESTITUTION, self.restitution.span, NODES)
         if self.rolling.span is None or not models:
