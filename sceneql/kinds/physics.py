@@ -55,10 +55,7 @@ class Model(Kind):
     def assemble_part(
         self, name: str, assembly: Assembly, bodies: Bodies, start: ModelState, first: int, last: int
     ) -> Bodies | None:
-        """Reserve only its bodies first..last-1, at their initial state, as a block that interacts with no other body.
-
-        None: the model cannot be divided.
-        """
+        """Reserve only its bodies first..last-1, initially, as a block without interactions; None: indivisible."""
         return None
 
     def read(self, output: str, state: ModelState) -> Any:
@@ -68,9 +65,8 @@ class Model(Kind):
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
         """Indices into `state.y` at which an output stands, in the output's shape; None: the output is computed.
 
-        ``state``: at the start of the run, for its bodies, ints and floats; the indices stay the same. Values that are
-        evaluated at stage times, as the place of an attractor, can read such outputs of models of their island and no
-        others: other links are refused. Everything that is read between steps is read by `read`.
+        ``state``: at the start of the run, for its bodies, ints and floats; the indices stay. Values at stage times, as
+        the place of an attractor, can read such outputs of models of their island alone; `read` is between steps.
         """
         return None
 
