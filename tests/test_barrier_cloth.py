@@ -32,7 +32,7 @@ def crossed(island, names):
     for name in names:
         bodies = island.bodies[name]
         points.append(places(island, name))
-        triangles.append((bodies.skin or bodies.faces).triangles + first)
+        triangles.append((bodies.skin or bodies.springs.faces()).triangles + first)
         first += bodies.count
     return crossings(np.concatenate(points), np.concatenate(triangles))
 

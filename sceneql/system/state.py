@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from sceneql.frame import Floats
     from sceneql.system.fields import Membrane
 
@@ -51,6 +53,8 @@ class Springs:
     """(2, m): stiffness [N/m] and damping [N s/m] of each spring."""
     period: float
     """Lower bound of the oscillation periods [s]."""
+    faces: Callable[[], Skin] | None = None
+    """The surface of their net, for contacts by a barrier; None without."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +90,6 @@ class Bodies:
     """How they turn; None for point masses."""
     skin: Skin | None = None
     """Their surface, where they are vertices of a solid; None for masses alone."""
-    faces: Skin | None = None
-    """The surface of a net of springs, for contacts by a barrier; None without."""
     immersed: Immersed | None = None
     """These masses as carried by a flow, whose velocity at their positions is theirs; None where no flow carries
     them."""

@@ -44,7 +44,9 @@ class Surface:
 
 def soft_skin(bodies: Bodies) -> Skin | None:
     """The skin of an elastic solid, or the faces of a net of springs; None for other masses and rigid bodies."""
-    return bodies.faces if bodies.skin is None else bodies.skin
+    if bodies.skin is None and bodies.springs is not None:
+        return None if bodies.springs.faces is None else bodies.springs.faces()
+    return bodies.skin
 
 
 def soft_surfaces(everyone: Sequence[Bodies], assembly: Assembly) -> list[Surface]:
