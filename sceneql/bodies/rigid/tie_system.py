@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Mover, Slopes, Tied
 
 KERNELS = "sceneql.bodies.rigid.tie_kernels"
-KINDS = ("point", "angle", "distance", "gear", "ball", "written")
+KINDS = ("point", "angle", "distance", "gear", "ball", "written", "carried")
 
 IMPLIED, ROUNDING = 1e-10, 1e-13
 """Pivot of a normalized row, the square of its part independent of the rows before, below which the row counts as
