@@ -5,7 +5,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import runs
-from sceneql.quantities.diagnostic import ScriptError
 from sceneql.shapes.placement import rotation_matrix
 
 SCRIPT = """
@@ -98,16 +97,3 @@ def test_wheels_in_a_housing_that_tumbles_turn_against_it(tmp_path, axis, solver
     np.testing.assert_allclose(end[2:4], by * y[12], atol=good)
     np.testing.assert_allclose(rotation_matrix(end[4]), turn, atol=good)
     np.testing.assert_allclose(end[0], turn @ np.linalg.solve(both, [*(turn.T @ y[:3]), y[13]])[:3], atol=10 * good)
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
-        ("-0.2 0.1 0.05 m", "0.2 0 0.1 m", "the wheels of 'mesh' turn about one axle"),
-        (", other_axis: 0 0 1", ", other_axis: 0 1 0", "'mesh' counts turns of its second wheel about an axis"),
-    ],
-)
-def test_wheels_that_cannot_mesh_are_told(tmp_path, old, new, said):
-    script = FREE.format(axis="0 0 1", solver="rk4", inertia="0.02 0.02 0.03").replace(old, new)
-    with pytest.raises(ScriptError, match=said):
-        runs.watch(tmp_path, script, [0], "first.angle", pruned=False)

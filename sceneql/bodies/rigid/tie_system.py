@@ -40,7 +40,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     from sceneql.bodies.rigid.tie_matrix import RowsOfTie, tie_matrix
     from sceneql.bodies.rigid.tie_rows_kernels import MOVED, MOVER, ROW, ROW_INTS
     from sceneql.bodies.rigid.tie_start import follow
-    from sceneql.bodies.rigid.wheels import geared
+    from sceneql.bodies.rigid.gears.wheels import geared
 
     ties = geared(ties, assembly)
     movers: dict[tuple[int, ...], int] = {}

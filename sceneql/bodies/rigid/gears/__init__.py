@@ -1,0 +1,1 @@
+"""Wheels that mesh: axles, and rows of gears."""
