@@ -23,8 +23,8 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.system.signatures_kernels import A, I, N
 
-write_gear = lazy("sceneql.bodies.rigid.gears.gear_kernels:write_gear", types.void(A, A, A, A))
-write_carried = lazy("sceneql.bodies.rigid.gears.carried_gear_kernels:write_carried", types.void(A, A, A, A))
+write_gear = lazy("sceneql.bodies.gears.gear_kernels:write_gear", types.void(A, A, A, A))
+write_carried = lazy("sceneql.bodies.gears.carried_gear_kernels:write_carried", types.void(A, A, A, A))
 
 POINT, ANGLE, DISTANCE, GEAR, BALL, WRITTEN, CARRIED = range(7)
 """Kinds of rows; their numbers: r_a, r_b, n; u, w, c; r_a, r_b, c; of a axis, direction across it at the start, that

@@ -50,5 +50,5 @@ class Gear(Joint):
         one, other = self.teeth
         no_line = 3 * [
             (0.0, 0.0, 0.0)
-        ]  # told, and whether it is carried, once all hinges are known (bodies/rigid/gears/wheels.py)
+        ]  # told, and whether it is carried, once all hinges are known (bodies/gears/wheels.py)
         return [TieRow("gear", (*vectors, *no_line), (one, -other if self.inner else other, 0.0))]

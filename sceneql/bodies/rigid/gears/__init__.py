@@ -1,1 +1,0 @@
-"""Wheels that mesh: axles, and rows of gears."""
