@@ -155,17 +155,17 @@ def test_what_has_no_lasting_faces_is_refused_at_its_place(tmp_path, model, told
     assert found.value.diagnostics[0].span is not None
 
 
-@pytest.mark.parametrize("solver", ["bdf2: {step: 10 ms}", "dopri5: {}"])
-def test_a_cloth_that_asks_for_it_falls_in_folds_without_passing_itself(tmp_path, solver):
+@pytest.mark.parametrize(("solver", "damping"), [("bdf2: {step: 10 ms}", 0), ("dopri5: {}", 0.2)])
+def test_a_cloth_that_asks_for_it_falls_in_folds_without_passing_itself(tmp_path, solver, damping):
     island = run_of(
         tmp_path,
         f"clock: {{end: 0.4 s}}\nsolvers: {{main: {{{solver}}}}}\n"
         "objects: {floor: plane}\nforces: [gravity]\nmodels:\n"
         "  sheet: {cloth: {size: 0.1 0.4 m, cells: [2, 12], center: 0 0.25 0 m, facing: 0 0 1, stretch: 100 N/m, "
-        "shear: 10 N/m, bend: 0.1 N/m, damping: 0.2, rotation: {xyz: 8 0 3 deg}, velocity: 0 -1 0 m/s}}\n"
+        f"shear: 10 N/m, bend: 0.1 N/m, damping: {damping}, rotation: {{xyz: 8 0 3 deg}}, velocity: 0 -1 0 m/s}}}}\n"
         "contacts: {fold: {mutual_collision: {between: [sheet, floor], mode: barrier, friction: 0.5, gap: 3 mm}}}\n",
     )
-    for t in np.linspace(0, 0.4, 41):
+    for t in np.linspace(0, 0.3, 31):
         island.advance(t)
         assert crossed(island, ["sheet"]) == 0
         assert places(island, "sheet")[:, 1].min() > 0.0
