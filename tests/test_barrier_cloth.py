@@ -153,3 +153,47 @@ def test_what_has_no_lasting_faces_is_refused_at_its_place(tmp_path, model, told
     with pytest.raises(ScriptError, match=f"'other' {told}, and does not collide") as found:
         load(path, pruned=False)
     assert found.value.diagnostics[0].span is not None
+
+
+@pytest.mark.parametrize(("solver", "damping"), [("bdf2: {step: 10 ms}", 0), ("dopri5: {}", 0.2)])
+def test_a_cloth_that_asks_for_it_falls_in_folds_without_passing_itself(tmp_path, solver, damping):
+    island = run_of(
+        tmp_path,
+        f"clock: {{end: 0.4 s}}\nsolvers: {{main: {{{solver}}}}}\n"
+        "objects: {floor: plane}\nforces: [gravity]\nmodels:\n"
+        "  sheet: {cloth: {size: 0.1 0.4 m, cells: [2, 12], center: 0 0.25 0 m, facing: 0 0 1, stretch: 100 N/m, "
+        f"shear: 10 N/m, bend: 0.1 N/m, damping: {damping}, rotation: {{xyz: 8 0 3 deg}}, velocity: 0 -1 0 m/s}}}}\n"
+        "contacts: {fold: {mutual_collision: {between: [sheet, floor], mode: barrier, friction: 0.5, gap: 3 mm}}}\n",
+    )
+    for t in np.linspace(0, 0.3, 31):
+        island.advance(t)
+        assert crossed(island, ["sheet"]) == 0
+        assert places(island, "sheet")[:, 1].min() > 0.0
+    assert places(island, "sheet")[:, 1].max() < 0.15
+
+
+@pytest.mark.parametrize(
+    ("contacts", "told"),
+    [
+        ("a: {mutual_collision: {between: [sheet], mode: barrier, restitution: 0.2}}", "has no restitution"),
+        ("a: {mutual_collision: {between: [sheet], gap: 1 mm}}", "spheres have no gap"),
+        ("a: {mutual_collision: {between: [sheet, dust], mode: barrier}}", "'dust' has no faces"),
+        (
+            "a: {mutual_collision: {between: [sheet], mode: barrier}}, b: {collision: {between: [sheet]}}",
+            "'b' would move",
+        ),
+        ("a: {collision: {between: [sheet, jelly]}}, b: {mutual_collision: {between: [sheet]}}", "'b' would move"),
+        ("a: {mutual_collision: {between: [jelly, sheet], mode: barrier}}", "has a barrier in `collision`"),
+    ],
+)
+def test_what_a_barrier_lacks_and_what_would_move_masses_past_it_is_refused(tmp_path, contacts, told):
+    path = tmp_path / "scene.yaml"
+    path.write_text(
+        f"models:\n  jelly: {{elastic: {{block: {{cells: [1, 1, 1], size: 1 1 1 m}}, {LAW}}}}}\n"
+        f"  sheet: {{cloth: {{}}}}\n  dust: {{particles: {{list: {{a: {{position: 0 3 0 m}}}}}}}}\n"
+        f"contacts: {{{contacts}}}\n"
+        "outputs: {film: {image: {size: 32 18}}}\n",
+        encoding="utf-8",
+    )
+    with pytest.raises(ScriptError, match=told):
+        load(path, pruned=False)

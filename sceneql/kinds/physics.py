@@ -169,10 +169,7 @@ class Model(Kind):
         return ()
 
     def static_masses(self) -> Mapping[str, StaticMass]:
-        """Masses by name that follow from its fields alone, for `check`.
-
-        The name "" stands for the lightest of nameless ones.
-        """
+        """Masses by name that follow from its fields alone, for `check`; "" stands for the lightest nameless one."""
         return {}
 
     def lowest(self) -> float | None:
@@ -355,6 +352,10 @@ class Contact(Kind):
     def refusals(self, models: Mapping[str, Model]) -> Iterable[Diagnostic]:
         """Errors, for `check`, where its models lack what it requires."""
         return ()
+
+    def keeps_apart(self, models: Mapping[str, Model]) -> bool:
+        """Whether nothing passes through its models in any step; contacts that move their masses then may not act."""
+        return False
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
         """Add gaps and impacts (or the local kernel that backs off) of one model against the others."""

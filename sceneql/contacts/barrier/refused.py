@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from sceneql.quantities.span import Span
 
 
-def beside_solids(model: str, why: str, place: Span | None) -> Diagnostic:
-    """The error for masses beside elastic solids that are no vertices of lasting faces (Model.faceless)."""
-    message = f"'{model}' {why}, and does not collide together with elastic solids"
+def beside_solids(model: str, why: str, place: Span | None, mode: str = "together with elastic solids") -> Diagnostic:
+    """The error for masses beside elastic solids, or in a ``mode``, that have no lasting faces (Model.faceless)."""
+    message = f"'{model}' {why}, and does not collide {mode}"
     help = "name under `between` what may touch, without it: solids, cloth and rigid bodies"
     return Diagnostic("no-collider", message, place, help)
