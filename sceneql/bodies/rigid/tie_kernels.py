@@ -11,7 +11,7 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_matrix_kernels import (
+from sceneql.bodies.rigid.tie_layout import (
     EASE_AT,
     FRESH,
     KIND_BITS,
@@ -34,12 +34,8 @@ from sceneql.bodies.rigid.tie_matrix_kernels import (
     TIE_HOLDS,
     TIES,
     TIES_AT,
-    add_tie,
-    begin_matrix,
-    end_matrix,
-    factor_filled,
-    solve_from,
 )
+from sceneql.bodies.rigid.tie_matrix_kernels import add_tie, begin_matrix, end_matrix, factor_filled, solve_from
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_A,
     AT_BIAS,
@@ -254,7 +250,7 @@ def balance(floats, ints, target, size_at):
     sum of, if it is to be 0 but for their rounding.
     """
     right, part = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]], floats[ints[EASE_AT]]
-    worst, row, shared = 0.0, 0, begin_matrix(floats, ints)
+    worst, row, shared = 0.0, 0, begin_matrix(floats, ints, part)
     for tie in range(ints[TIES]):
         if tie + AHEAD < ints[TIES]:
             fetch_tie(floats, ints, tie + AHEAD)
@@ -305,7 +301,7 @@ def hold(t, y, rate, floats, ints):
     """Adds the forces [N] and torques [N m] of all ties."""
     # As `survey` and `balance`, but with each mover and each row looked at once while it is in the cache.
     right, part = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]], floats[ints[EASE_AT]]
-    worst, row, shared = 0.0, 0, begin_matrix(floats, ints)
+    worst, row, shared = 0.0, 0, begin_matrix(floats, ints, part)
     for tie in range(ints[TIES]):
         which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
         if tie + AHEAD < ints[TIES]:

@@ -4,7 +4,7 @@
 from numba import types
 
 from sceneql.bodies.rigid.tie_kernels import MOST_CORRECTIONS, SHARE, balance, clear, refine, survey
-from sceneql.bodies.rigid.tie_matrix_kernels import (
+from sceneql.bodies.rigid.tie_layout import (
     EASE_AT,
     MOVED_AT,
     MOVERS,

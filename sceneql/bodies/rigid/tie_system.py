@@ -35,6 +35,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     """
     import numpy as np
 
+    from sceneql.bodies.rigid import tie_layout as layout
     from sceneql.bodies.rigid import tie_matrix_kernels as kernels
     from sceneql.bodies.rigid.tie_kernels import survey
     from sceneql.bodies.rigid.tie_matrix import RowsOfTie, tie_matrix
@@ -53,35 +54,39 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         stride = max(LEAST, *map(len, constants))
         numbers_at = assembly.floats([x for some in constants if some for x in (*some, *[0.0] * (stride - len(some)))])
         kinds = [KINDS.index(row.kind) for row in tie.rows]
-        packed = sum(kind << kernels.KIND_BITS * k for k, kind in enumerate(kinds))
+        packed = sum(kind << layout.KIND_BITS * k for k, kind in enumerate(kinds))
         heads.append([len(kinds), tie.scratch_at, *of, packed, numbers_at, stride, tie.holds_at])
         sides.append(RowsOfTie((of[0], of[1]), len(rows), len(rows) + len(kinds), tie.scratch_at, known))
         for k, (kind, some) in enumerate(zip(kinds, constants, strict=True)):
             rows.append((kind, *of, numbers_at, tie.scratch_at + ROW * k, tie.holds_at))
             numbers_at += stride if some else 0
     matrix = tie_matrix(sides, [which[0] >= 0 for which in movers])
-    for head, marks in zip(heads, matrix.marks, strict=True):
-        head.append(marks)
+    factors_from = assembly.floats(np.zeros(matrix.factors))
+    for k, (head, marks) in enumerate(zip(heads, matrix.marks, strict=True)):
+        head += [marks, sides[k].first, *(-1, -1, -1, -1)]
+        if matrix.chain:
+            head[layout.FACTORS_FROM :] = [factors_from, *matrix.chain[k]]
+            factors_from += layout.of_chain(sides[k].count)
     most = kernels.T_OF * max((some[0] for some in matrix.shared), default=0)
     ease, of_tie = assembly.floats([kernels.EASE]), assembly.floats(np.zeros(2 * most))
-    shared_at, ended_at = kernels.HEAD + MOVER * len(movers) + ROW_INTS * len(rows), -1
+    shared_at, ended_at = layout.HEAD + MOVER * len(movers) + ROW_INTS * len(rows), -1
     for sharers in matrix.shared:
-        ended_at, sharers[kernels.BEFORE] = shared_at, ended_at
-        sharers[kernels.HALF] = of_tie + most * sharers[kernels.HALF]
+        ended_at, sharers[layout.BEFORE] = shared_at, ended_at
+        sharers[layout.HALF] = of_tie + most * sharers[layout.HALF]
         shared_at += len(sharers)
     lists: list[Sequence[int]] = [
         *([number for some in parts for number in some] for parts in (movers, rows, matrix.shared)),
         [] if matrix.plan is None else matrix.plan.numbers.tolist(),
         [*chain(*heads)],
     ]
-    begins = np.cumsum([kernels.HEAD, *(len(some) for some in lists)]).tolist()
+    begins = np.cumsum([layout.HEAD, *(len(some) for some in lists)]).tolist()
     spent = (0, 0) if matrix.plan is None else (matrix.plan.factors, 2 * (matrix.plan.work + len(rows)))
     sizes = (MOVED * len(movers), matrix.size, *spent, len(rows))
     moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
     for at in matrix.alone:
         assembly.write(values + at, [1.0])
     free = not any(isinstance(mover, Led) for tie in ties for mover in tie.movers)
-    kept = assembly.floats(np.zeros(kernels.KEPT * len(rows) if free else 0))
+    kept = assembly.floats(np.zeros(layout.KEPT * len(rows) if free else 0))
     head = [len(movers), len(rows), *begins[:4], len(lists[3])]
     head += [
         moved,
@@ -99,6 +104,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         begins[4],
     ]
     head += [assembly.floats(np.ones(len(rows))), ended_at]
+    head += [assembly.floats(np.zeros(layout.CHAIN)) if matrix.chain else -1]
     ints = tuple(int(number) for number in np.concatenate([head, *lists]))
     _add_pivots(assembly, ties)
     numbers = assembly.numbers()

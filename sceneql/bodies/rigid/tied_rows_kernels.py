@@ -46,8 +46,8 @@ from sceneql.bodies.rigid.moved_bodies_kernels import (
     TIES_AT,
 )
 from sceneql.bodies.rigid.tie_kernels import survey
-from sceneql.bodies.rigid.tie_matrix_kernels import MOVED_AT, MOVERS_AT, ROWS_AT
-from sceneql.bodies.rigid.tie_matrix_kernels import ROWS as TIE_ROWS
+from sceneql.bodies.rigid.tie_layout import MOVED_AT, MOVERS_AT, ROWS_AT
+from sceneql.bodies.rigid.tie_layout import ROWS as TIE_ROWS
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_C,
     AT_J,
