@@ -46,6 +46,8 @@ from sceneql.system.signatures_kernels import A, F, I, N
 
 INVERSE, GIVEN = 6, 7
 """Lanes behind those of the rows."""
+SIDE = 64
+"""Numbers of the columns by one mover: six of J, and by the second one the bias behind them."""
 
 
 @lean_inlined
@@ -58,7 +60,7 @@ def tie_at(ints, tie):
 def weigh(floats, mover, scratch, side):
     """Write T of the tie whose J are turned over, by one of its movers, of the floats from ``mover`` on."""
     m = floats[mover + AT_INVERSE : mover + AT_MASS + 1]
-    j, t = scratch[COLUMNS + 64 * side :], scratch[WEIGHED + 48 * side :]
+    j, t = scratch[COLUMNS + SIDE * side :], scratch[WEIGHED + 48 * side :]
     inverse = m[AT_MASS - AT_INVERSE]
     store(t, 0, load(j, 0) * inverse)
     store(t, 8, load(j, 8) * inverse)
@@ -83,9 +85,17 @@ def join(floats, to, rows, at, t):
         store(w, LANES * i, with_lane(row, GIVEN, u[LANES * i + GIVEN]))
 
 
-@lean(types.void(A, I, N, F), inner=True)
-def eliminate(floats, ints, tie, part):
-    """Factor a tie, after those before it: J of its rows, the right hand side and its movers are written.
+@lean_inlined
+def turn(floats, ints, tie):
+    """Write J of a tie in columns."""
+    to, columns = ints[tie_at(ints, tie) + ROWS_FROM], floats[ints[CHAIN_AT] + COLUMNS : ints[CHAIN_AT] + WEIGHED]
+    turn_over(floats, to, ROW, columns, 0, LANES)
+    turn_over(floats, to + 6, ROW, columns, SIDE, LANES)
+
+
+@lean(types.void(A, I, N, F))
+def eliminate_turned(floats, ints, tie, part):
+    """Factor a tie, after those before it: J, the right hand side and its movers are written, J in columns too.
 
     ``part`` of its diagonal is added to it.
     """
@@ -101,7 +111,6 @@ def eliminate(floats, ints, tie, part):
     for side in range(2):
         if marks & (SOLVED << side) == 0:
             continue
-        turn_over(floats, to + 6 * side, ROW, scratch, COLUMNS + 64 * side, LANES)
         weigh(floats, ints[MOVED_AT] + MOVED * which[ONE + side], scratch, side)
         t = scratch[WEIGHED + 48 * side :]
         a, b, c, d, e, f = load(t, 0), load(t, 8), load(t, 16), load(t, 24), load(t, 32), load(t, 40)
@@ -141,6 +150,13 @@ def eliminate(floats, ints, tie, part):
         most = max(most, inverse * diagonal[i])
         store(own, LANES * i, with_lane(row, INVERSE, inverse))
     scratch[MOST_AT] = most
+
+
+@lean(types.void(A, I, N, F), inner=True)
+def eliminate(floats, ints, tie, part):
+    """`eliminate_turned`, J being written in rows alone."""
+    turn(floats, ints, tie)
+    eliminate_turned(floats, ints, tie, part)
 
 
 @lean(types.void(A, I, types.boolean), inner=True)

@@ -210,6 +210,12 @@ def push(floats, ints, right, further):
             move_by(mover)
 
 
+@lean_inlined
+def little_of(ints):
+    """What may be left of an equation, against the numbers that it is a sum of."""
+    return LEFT * max(1.0, ints[ROWS] / LONG)
+
+
 @lean(types.void(A, I, N, N, F, N, types.boolean))
 def refine(floats, ints, target, size_at, worst, most, begun):
     """The forces of `balance` by the factors that there are, in at most so many corrections.
@@ -218,7 +224,7 @@ def refine(floats, ints, target, size_at, worst, most, begun):
     """
     right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
     last, found = math.inf, False
-    little = LEFT * max(1.0, ints[ROWS] / LONG)
+    little = little_of(ints)
     for corrections in range(most):
         if corrections > 0:
             worst = remaining(floats, ints, target, size_at)
@@ -233,11 +239,17 @@ def refine(floats, ints, target, size_at, worst, most, begun):
             floats[ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH] + AT_FORCE] = 0.0
 
 
+@lean_inlined
+def well(ints, least):
+    """Whether factors with a least pivot solve at once."""
+    return least * max(1.0, ints[ROWS] / SHORT) ** 3 > WELL
+
+
 @lean(types.void(A, I, N, N, F))
 def correct(floats, ints, target, size_at, worst):
     """`balance` where the matrix, and on the right hand side what remains, ``worst`` at most, are written already."""
     least = factor_filled(floats, ints)
-    sure = size_at != AT_SIZE and least * max(1.0, ints[ROWS] / SHORT) ** 3 > WELL
+    sure = size_at != AT_SIZE and well(ints, least)
     most = 0 if least == 0.0 else 1 if sure else MOST_CORRECTIONS
     refine(floats, ints, target, size_at, worst, most, True)
 
@@ -268,6 +280,29 @@ def unlike(a, b, c, x, y, z):
     return apart > COARSE * size
 
 
+@lean_inlined
+def add_to(y, rate, floats, at, to, ints):
+    """`add` for the mover of ints[at:] and floats[to:]."""
+    if ints[at + POSITION] < 0:
+        return
+    body = floats[to : to + MOVED]
+    inverse, v = body[AT_MASS], ints[at + VELOCITY]
+    force = rate[v : v + 3]
+    for c in range(3):
+        force[c] += body[AT_PUSHED + c]
+    x, y_, z = body[AT_A], body[AT_A + 1], body[AT_A + 2]
+    if inverse > 0.0 and unlike(inverse * force[0], inverse * force[1], inverse * force[2], x, y_, z):
+        force[0], force[1], force[2] = x / inverse, y_ / inverse, z / inverse
+    if ints[at + ROTATION] >= 0:
+        k = ints[at + MOMENTUM]
+        torque = rate[k : k + 3]
+        for c in range(3):
+            torque[c] += body[AT_PUSHED + 3 + c]
+        x, y_, z = turning(y, floats, to, k)
+        if inverse > 0.0 and unlike(torque[0], torque[1], torque[2], x, y_, z):
+            torque[0], torque[1], torque[2] = x, y_, z
+
+
 @lean(types.void(A, A, A, I))
 def add(y, rate, floats, ints):
     """Adds the rows' forces and torques to the entries of velocities and angular momenta.
@@ -275,25 +310,7 @@ def add(y, rate, floats, ints):
     Those of the accelerations themselves where the forces of ties on a light body are so large that sums round them.
     """
     for m in range(ints[MOVERS]):
-        at, to = ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m
-        if ints[at + POSITION] < 0:
-            continue
-        body = floats[to : to + MOVED]
-        inverse, v = body[AT_MASS], ints[at + VELOCITY]
-        force = rate[v : v + 3]
-        for c in range(3):
-            force[c] += body[AT_PUSHED + c]
-        x, y_, z = body[AT_A], body[AT_A + 1], body[AT_A + 2]
-        if inverse > 0.0 and unlike(inverse * force[0], inverse * force[1], inverse * force[2], x, y_, z):
-            force[0], force[1], force[2] = x / inverse, y_ / inverse, z / inverse
-        if ints[at + ROTATION] >= 0:
-            k = ints[at + MOMENTUM]
-            torque = rate[k : k + 3]
-            for c in range(3):
-                torque[c] += body[AT_PUSHED + 3 + c]
-            x, y_, z = turning(y, floats, to, k)
-            if inverse > 0.0 and unlike(torque[0], torque[1], torque[2], x, y_, z):
-                torque[0], torque[1], torque[2] = x, y_, z
+        add_to(y, rate, floats, ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m, ints)
 
 
 @lean(TERM, inner=True)

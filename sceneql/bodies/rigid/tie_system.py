@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.system import Assembly, Mover, Slopes, Tied
 
-KERNELS = "sceneql.bodies.rigid.tie_kernels"
+KERNELS, CHAINS = "sceneql.bodies.rigid.tie_kernels", "sceneql.bodies.rigid.tie_chain_hold_kernels"
 KINDS = ("point", "angle", "distance", "gear", "ball", "written")
 
 IMPLIED, ROUNDING = 1e-10, 1e-13
@@ -83,6 +83,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     spent = (0, 0) if matrix.plan is None else (matrix.plan.factors, 2 * (matrix.plan.work + len(rows)))
     sizes = (MOVED * len(movers), matrix.size, *spent, len(rows))
     moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
+    assembly.floats(np.zeros(layout.LANES))  # which lanes of the right hand side reach
     for at in matrix.alone:
         assembly.write(values + at, [1.0])
     free = not any(isinstance(mover, Led) for tie in ties for mover in tie.movers)
@@ -121,7 +122,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
 
         return tie_slopes(ints, spare, len(assembly.start()))
 
-    assembly.term("tie", f"{KERNELS}:hold", ints, slopes)
+    assembly.term("tie", f"{CHAINS if matrix.chain else KERNELS}:hold", ints, slopes)
     assembly.tie_ints = ints
     assembly.after_step("sceneql.bodies.rigid.tie_settle_kernels:settle", ints, samples=True)
     if free:  # a prescribed motion is known at the end of a step only
