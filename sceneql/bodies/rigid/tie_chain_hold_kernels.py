@@ -8,7 +8,7 @@ way back: so of chains that are larger than a cache the part that is still there
 import numpy as np
 from numba import types
 
-from sceneql.bodies.rigid.tie_chain_kernels import COLUMNS, GIVEN, INVERSE, SIDE, eliminate_turned, tie_at, turn
+from sceneql.bodies.rigid.tie_chain_kernels import COLUMNS, SIDE, backward, eliminate_turned, tie_at, turn
 from sceneql.bodies.rigid.tie_kernels import AHEAD, add, add_to, fetch_tie, little_of, refine, well, write_tie
 from sceneql.bodies.rigid.tie_kernels import MOST_CORRECTIONS as MOST
 from sceneql.bodies.rigid.tie_layout import (
@@ -23,7 +23,6 @@ from sceneql.bodies.rigid.tie_layout import (
     MOVED_AT,
     MOVERS_AT,
     ONE,
-    PARENT,
     RIGHT_AT,
     ROWS_FROM,
     ROWS_OF,
@@ -47,6 +46,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
 from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.lanes_kernels import below, fma, load, most, spread, store
+from sceneql.compiled.prefetch_kernels import fetch_all
 from sceneql.system.signatures_kernels import TERM, A, F, I, N
 
 LANE = np.arange(float(LANES))
@@ -74,31 +74,18 @@ def left_of(floats, ints, tie):
     return most(part)
 
 
-@lean(types.void(A, A, A, I, N))
-def pull(y, rate, floats, ints, tie):
-    """Find the forces of a tie, after its parent's, and add them to the movers, and to the rate if these are done."""
+@lean(types.void(A, I, N, types.boolean))
+def pull(floats, ints, tie, begun):
+    """Find the forces of a tie, after its parent's, and what they do to its movers, whose AT_A change once all have.
+
+    ``begun``: as for `backward`.
+    """
     widest()
+    backward(floats, ints, tie, begun)
     at = tie_at(ints, tie)
-    which, right = ints[at : at + SIDES], ints[RIGHT_AT]
+    which, first = ints[at : at + SIDES], ints[RIGHT_AT] + ints[at + FIRST_ROW]
     rows, to, scratch = which[ROWS_OF], which[ROWS_FROM], floats[ints[CHAIN_AT] + COLUMNS : ints[CHAIN_AT] + CHAIN]
-    own = floats[which[FACTORS_FROM] : which[FACTORS_FROM] + 2 * LANES * rows]
-    x = floats[right + which[FIRST_ROW] : right + which[FIRST_ROW] + rows]
-    for i in range(rows):
-        x[i] = own[LANES * i + GIVEN]
-    if which[PARENT] >= 0:
-        at = tie_at(ints, which[PARENT])
-        above = right + ints[at + FIRST_ROW]
-        z = floats[above : above + ints[at + ROWS_OF]]
-        for i in range(rows):
-            w, total = own[LANES * (rows + i) : LANES * (rows + i + 1)], 0.0
-            for j in range(z.size):
-                total += w[j] * z[j]
-            x[i] -= total
-    for i in range(rows - 1, -1, -1):
-        total = x[i]
-        for j in range(rows - 1, i, -1):
-            total -= own[LANES * i + j] * x[j]
-        x[i] = total * own[LANES * i + INVERSE]
+    x = floats[first : first + rows]
     low = high = spread(0.0)
     for i in range(rows):
         low = fma(x[i], load(floats, to + ROW * i), low)
@@ -117,7 +104,13 @@ def pull(y, rate, floats, ints, tie):
             change = weighed_by(m, m[AT_PUSHED:])
             for c in range(6):
                 m[AT_A + c] += change[c]
-            add_to(y, rate, floats, ints[MOVERS_AT] + MOVER * which[ONE + side], moved, ints)
+
+
+@lean_inlined
+def fetch_factors(floats, ints, tie):
+    """Ask for the factors of a tie that comes soon."""
+    at = tie_at(ints, tie)
+    fetch_all(floats, ints[at + FACTORS_FROM], ints[at + FACTORS_FROM] + 2 * LANES * ints[at + ROWS_OF])
 
 
 @lean_inlined
@@ -139,6 +132,7 @@ def hold(t, y, rate, floats, ints):
         which = ints[at : at + SIDES]
         if tie + AHEAD < ints[TIES]:
             fetch_tie(floats, ints, tie + AHEAD)
+            fetch_factors(floats, ints, tie + AHEAD)
         for side in range(2):
             if which[MARKS] & (FRESH << side):
                 m = which[ONE + side]
@@ -153,7 +147,15 @@ def hold(t, y, rate, floats, ints):
     least = factor_filled(floats, ints)
     if well(ints, least) and worst > little_of(ints):
         for tie in range(ints[TIES] - 1, -1, -1):
-            pull(y, rate, floats, ints, tie)
+            if tie >= AHEAD:
+                fetch_tie(floats, ints, tie - AHEAD)
+                fetch_factors(floats, ints, tie - AHEAD)
+            pull(floats, ints, tie, True)
+            at = tie_at(ints, tie)
+            for side in range(2):
+                if ints[at + MARKS] & (FRESH << side):
+                    m = ints[at + ONE + side]
+                    add_to(y, rate, floats, ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m, ints)
         return
     refine(floats, ints, AT_BIAS, AT_BIAS, worst, 0 if least == 0.0 else MOST, True)
     add(y, rate, floats, ints)

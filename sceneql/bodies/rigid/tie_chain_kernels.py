@@ -159,50 +159,63 @@ def eliminate(floats, ints, tie, part):
     eliminate_turned(floats, ints, tie, part)
 
 
+@lean(types.void(A, I, N))
+def forward(floats, ints, tie):
+    """The first pass of a solution over a tie, after those before it, in the right hand side."""
+    at = tie_at(ints, tie)
+    which, right = ints[at : at + SIDES], floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
+    rows, first = which[ROWS_OF], which[FIRST_ROW]
+    own, x = floats[which[FACTORS_FROM] : which[FACTORS_FROM] + LANES * rows], right[first : first + rows]
+    for side in range(2):
+        if which[CHILDREN + side] >= 0:
+            at = tie_at(ints, which[CHILDREN + side] >> 1)
+            child = ints[at : at + SIDES]
+            count, y = child[ROWS_OF], right[child[FIRST_ROW] : child[FIRST_ROW] + child[ROWS_OF]]
+            u = floats[child[FACTORS_FROM] : child[FACTORS_FROM] + 2 * LANES * count]
+            for k in range(count):
+                value = y[k] * u[LANES * k + INVERSE]
+                w = u[LANES * (count + k) : LANES * (count + k + 1)]
+                for i in range(rows):
+                    x[i] -= w[i] * value
+    for k in range(rows):
+        value = x[k] * own[LANES * k + INVERSE]
+        for i in range(k + 1, rows):
+            x[i] -= own[LANES * k + i] * value
+
+
+@lean(types.void(A, I, N, types.boolean))
+def backward(floats, ints, tie, begun):
+    """The second pass of a solution over a tie, after its parent, in the right hand side.
+
+    ``begun``: `eliminate` has taken the first pass, for the right hand side that there was.
+    """
+    at = tie_at(ints, tie)
+    which, right = ints[at : at + SIDES], floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
+    rows, first = which[ROWS_OF], which[FIRST_ROW]
+    own, x = floats[which[FACTORS_FROM] : which[FACTORS_FROM] + 2 * LANES * rows], right[first : first + rows]
+    if begun:
+        for i in range(rows):
+            x[i] = own[LANES * i + GIVEN]
+    if which[PARENT] >= 0:
+        at = tie_at(ints, which[PARENT])
+        z = right[ints[at + FIRST_ROW] : ints[at + FIRST_ROW] + ints[at + ROWS_OF]]
+        for i in range(rows):
+            w, total = own[LANES * (rows + i) : LANES * (rows + i + 1)], 0.0
+            for j in range(z.size):
+                total += w[j] * z[j]
+            x[i] -= total
+    for i in range(rows - 1, -1, -1):
+        total = x[i]
+        for j in range(rows - 1, i, -1):
+            total -= own[LANES * i + j] * x[j]
+        x[i] = total * own[LANES * i + INVERSE]
+
+
 @lean(types.void(A, I, types.boolean), inner=True)
 def solve(floats, ints, begun):
     """Solve with the factors, in place; ``begun``: for the right hand side that there was when they were made."""
-    right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
-    for tie in range(ints[TIES]):
-        at = tie_at(ints, tie)
-        which = ints[at : at + SIDES]
-        rows, first = which[ROWS_OF], which[FIRST_ROW]
-        own, x = floats[which[FACTORS_FROM] : which[FACTORS_FROM] + LANES * rows], right[first : first + rows]
-        if begun:
-            for i in range(rows):
-                x[i] = own[LANES * i + GIVEN]
-            continue
-        for side in range(2):
-            if which[CHILDREN + side] >= 0:
-                at = tie_at(ints, which[CHILDREN + side] >> 1)
-                child = ints[at : at + SIDES]
-                count, y = child[ROWS_OF], right[child[FIRST_ROW] : child[FIRST_ROW] + child[ROWS_OF]]
-                u = floats[child[FACTORS_FROM] : child[FACTORS_FROM] + 2 * LANES * count]
-                for k in range(count):
-                    value = y[k] * u[LANES * k + INVERSE]
-                    w = u[LANES * (count + k) : LANES * (count + k + 1)]
-                    for i in range(rows):
-                        x[i] -= w[i] * value
-        for k in range(rows):
-            value = x[k] * own[LANES * k + INVERSE]
-            for i in range(k + 1, rows):
-                x[i] -= own[LANES * k + i] * value
+    if not begun:
+        for tie in range(ints[TIES]):
+            forward(floats, ints, tie)
     for tie in range(ints[TIES] - 1, -1, -1):
-        at = tie_at(ints, tie)
-        which = ints[at : at + SIDES]
-        rows, first = which[ROWS_OF], which[FIRST_ROW]
-        own, x = floats[which[FACTORS_FROM] : which[FACTORS_FROM] + 2 * LANES * rows], right[first : first + rows]
-        if which[PARENT] >= 0:
-            at = tie_at(ints, which[PARENT])
-            parent = ints[at : at + SIDES]
-            z = right[parent[FIRST_ROW] : parent[FIRST_ROW] + parent[ROWS_OF]]
-            for i in range(rows):
-                w, total = own[LANES * (rows + i) : LANES * (rows + i + 1)], x[i]
-                for j in range(z.size):
-                    total -= w[j] * z[j]
-                x[i] = total
-        for i in range(rows - 1, -1, -1):
-            total = x[i]
-            for j in range(rows - 1, i, -1):
-                total -= own[LANES * i + j] * x[j]
-            x[i] = total * own[LANES * i + INVERSE]
+        backward(floats, ints, tie, begun)

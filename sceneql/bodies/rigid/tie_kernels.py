@@ -107,26 +107,33 @@ def write_tie(floats, which, moved):
         to += ROW
 
 
+@lean_inlined
+def survey_tie(y, floats, ints, tie):
+    """`survey` of a tie, after those before it."""
+    worst, which = 0.0, ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
+    for side in range(2):
+        if which[MARKS] & (FRESH << side):
+            m = which[ONE + side]
+            see(y, floats, ints[MOVED_AT] + MOVED * m, ints, ints[MOVERS_AT] + MOVER * m)
+    write_tie(floats, which, ints[MOVED_AT])
+    to = which[ROWS_FROM]
+    for _ in range(which[ROWS_OF]):
+        gap, size = abs(floats[to + AT_C]), max(floats[to + AT_SIZE], 1e-300)
+        if gap > worst * size:
+            worst = gap / size
+        to += ROW
+    return worst
+
+
 @lean(F(F, A, A, I))
 def survey(t, y, floats, ints):
     """Write the movers, at no acceleration, and the rows for a state; the largest gap of a row, against the numbers
     that it is the difference of."""
     worst = 0.0
     for tie in range(ints[TIES]):
-        which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
         if tie + AHEAD < ints[TIES]:
             fetch_tie(floats, ints, tie + AHEAD)
-        for side in range(2):
-            if which[MARKS] & (FRESH << side):
-                m = which[ONE + side]
-                see(y, floats, ints[MOVED_AT] + MOVED * m, ints, ints[MOVERS_AT] + MOVER * m)
-        write_tie(floats, which, ints[MOVED_AT])
-        to = which[ROWS_FROM]
-        for _ in range(which[ROWS_OF]):
-            gap, size = abs(floats[to + AT_C]), max(floats[to + AT_SIZE], 1e-300)
-            if gap > worst * size:
-                worst = gap / size
-            to += ROW
+        worst = max(worst, survey_tie(y, floats, ints, tie))
     return worst
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from itertools import chain
@@ -14,7 +15,9 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.system import Assembly, Mover, Slopes, Tied
 
-KERNELS, CHAINS = "sceneql.bodies.rigid.tie_kernels", "sceneql.bodies.rigid.tie_chain_hold_kernels"
+HOLD = "sceneql.bodies.rigid.tie_kernels:hold", "sceneql.bodies.rigid.tie_chain_hold_kernels:hold"
+SETTLE = "sceneql.bodies.rigid.tie_settle_kernels:settle", "sceneql.bodies.rigid.tie_chain_settle_kernels:settle"
+"""Of any ties, of chains."""
 KINDS = ("point", "angle", "distance", "gear", "ball", "written")
 
 IMPLIED, ROUNDING = 1e-10, 1e-13
@@ -105,7 +108,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         begins[4],
     ]
     head += [assembly.floats(np.ones(len(rows))), ended_at]
-    head += [assembly.floats(np.zeros(layout.CHAIN)) if matrix.chain else -1]
+    head += [assembly.floats([math.inf, *(layout.CHAIN - 1) * [0.0]]) if matrix.chain else -1]
     ints = tuple(int(number) for number in np.concatenate([head, *lists]))
     _add_pivots(assembly, ties)
     numbers = assembly.numbers()
@@ -122,9 +125,10 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
 
         return tie_slopes(ints, spare, len(assembly.start()))
 
-    assembly.term("tie", f"{CHAINS if matrix.chain else KERNELS}:hold", ints, slopes)
+    chained = bool(matrix.chain)
+    assembly.term("tie", HOLD[chained], ints, slopes)
     assembly.tie_ints = ints
-    assembly.after_step("sceneql.bodies.rigid.tie_settle_kernels:settle", ints, samples=True)
+    assembly.after_step(SETTLE[chained], ints, samples=True)
     if free:  # a prescribed motion is known at the end of a step only
         assembly.tied_drift("sceneql.bodies.rigid.rattle_kernels:end_tied", ints)
 
