@@ -113,7 +113,7 @@ def fetch_factors(floats, ints, tie):
     fetch_all(floats, ints[at + FACTORS_FROM], ints[at + FACTORS_FROM] + 2 * LANES * ints[at + ROWS_OF])
 
 
-@lean_inlined
+@lean(F(A, I, N, F))
 def take_in(floats, ints, tie, part):
     """Eliminate a tie, its rows and movers being written; what is left of its rows, as `left_of` says."""
     turn(floats, ints, tie)

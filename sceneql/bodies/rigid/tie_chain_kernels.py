@@ -85,7 +85,7 @@ def join(floats, to, rows, at, t):
         store(w, LANES * i, with_lane(row, GIVEN, u[LANES * i + GIVEN]))
 
 
-@lean_inlined
+@lean(types.void(A, I, N))
 def turn(floats, ints, tie):
     """Write J of a tie in columns."""
     to, columns = ints[tie_at(ints, tie) + ROWS_FROM], floats[ints[CHAIN_AT] + COLUMNS : ints[CHAIN_AT] + WEIGHED]

@@ -70,7 +70,8 @@ def tie_matrix(sides: Sequence[RowsOfTie], solved: Sequence[bool]) -> TieMatrix:
     chain = _chain(sides, of_mover)
     if chain:
         factors = sum(kernels.of_chain(tie.count) for tie in sides)
-        made, places = TieMatrix(0, None, factors=factors, chain=chain), {}
+        made = TieMatrix(0, None, factors=factors, chain=chain)
+        places: dict[tuple[int, int], int] = {}
     else:
         made, places = _whole(sides) if sides[-1].end <= WHOLE else _sparse(sides, pairs)
     last = {mover: some[-1] for mover, some in of_mover.items()}
