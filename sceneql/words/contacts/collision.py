@@ -93,7 +93,10 @@ class Collision(Contact):
     solids do so by the barrier, too, and with one another and with objects there: by triangles of up to 3 sides of the
     skins, of a ball by 1,280 that lie within half a hundredth of its radius. What they keep apart is no smaller than
     the gap; friction acts on both sides of it, and so may turn them a little by that arm. `points`, `normals` and
-    `forces` do not tell of the barrier, and bodies that ties hold do not collide with elastic solids.
+    `forces` do not tell of the barrier, and bodies that ties hold do not collide with elastic solids. Cloth and
+    `solid` nets of springs beside elastic solids have it on both sides of their faces, also against themselves, as in
+    `touch: {collision: {between: [jelly, sheet, floor], friction: 0.3}}` of an `elastic` jelly on a `cloth`: the gap
+    is then all the thickness that counts. What tears, ropes and particles are refused there.
 
     Skins in a flow (`membrane`) have no mass: within the `gap`, a cell by default, forces push them off objects,
     masses, rigid bodies, one another and themselves (what is nearer at the start than two gaps is not pushed apart),
@@ -239,11 +242,13 @@ class Collision(Contact):
                 yield Diagnostic("no-collider", message, written, "name under `between` what may touch, without it")
             models = {name: model for name, model in models.items() if not model.carried}
         soft = self.mode in ("auto", "barrier") and any(model.has_skin for model in models.values())
-        hard = next((name for name, model in models.items() if not (model.has_skin or model.turns)), None)
+        whys = {name: "" if model.has_skin or model.turns else model.faceless() for name, model in models.items()}
+        hard = next((name for name, why in whys.items() if why), None)
         if soft and hard is not None:
-            message = f"'{hard}' does not collide together with elastic solids yet"
+            from sceneql.contacts.barrier.refused import beside_solids
+
             written = next((ref.span for ref in self.between or () if ref.name == hard), None)
-            yield Diagnostic("no-collider", message, written, "name under `between` what may touch, without it")
+            yield beside_solids(hard, whys[hard], written)
         if soft and self.restitution.span is not None:
             yield Diagnostic("no-restitution", NO_RESTITUTION, self.restitution.span, NODES)
         if self.rolling.span is None or not models:
