@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sceneql.bodies.rigid.tie_layout import CHAIN_AT
+from sceneql.bodies.rigid.matrix.tie_layout import CHAIN_AT
 from sceneql.pipeline import load
 from sceneql.run.run import Run
 

@@ -5,9 +5,9 @@ With the velocities closed behind the step (tie_settle_kernels) this is RATTLE (
 24-34), symplectic and reversible in time where forces depend on the places alone.
 """
 
+from sceneql.bodies.rigid.matrix.tie_layout import KEPT, KEPT_AT, MOVED_AT, MOVERS_AT, RIGHT_AT, ROWS, ROWS_AT
+from sceneql.bodies.rigid.matrix.tie_matrix_kernels import factor, solve
 from sceneql.bodies.rigid.tie_kernels import survey
-from sceneql.bodies.rigid.tie_layout import KEPT, KEPT_AT, MOVED_AT, MOVERS_AT, RIGHT_AT, ROWS, ROWS_AT
-from sceneql.bodies.rigid.tie_matrix_kernels import factor, solve
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_C,
     AT_J,

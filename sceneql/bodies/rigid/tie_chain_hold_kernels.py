@@ -8,10 +8,8 @@ way back: so of chains that are larger than a cache the part that is still there
 import numpy as np
 from numba import types
 
-from sceneql.bodies.rigid.tie_chain_kernels import COLUMNS, SIDE, backward, eliminate_turned, tie_at, turn
-from sceneql.bodies.rigid.tie_kernels import AHEAD, add, add_to, fetch_tie, little_of, refine, well, write_tie
-from sceneql.bodies.rigid.tie_kernels import MOST_CORRECTIONS as MOST
-from sceneql.bodies.rigid.tie_layout import (
+from sceneql.bodies.rigid.matrix.tie_chain_kernels import COLUMNS, SIDE, backward, eliminate_turned, tie_at, turn
+from sceneql.bodies.rigid.matrix.tie_layout import (
     CHAIN,
     CHAIN_AT,
     EASE_AT,
@@ -30,7 +28,9 @@ from sceneql.bodies.rigid.tie_layout import (
     SOLVED,
     TIES,
 )
-from sceneql.bodies.rigid.tie_matrix_kernels import begin_matrix, factor_filled
+from sceneql.bodies.rigid.matrix.tie_matrix_kernels import begin_matrix, factor_filled
+from sceneql.bodies.rigid.tie_kernels import AHEAD, add, add_to, fetch_tie, little_of, refine, well, write_tie
+from sceneql.bodies.rigid.tie_kernels import MOST_CORRECTIONS as MOST
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_A,
     AT_BIAS,

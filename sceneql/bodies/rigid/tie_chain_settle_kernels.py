@@ -8,10 +8,8 @@ factors of their own.
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_chain_hold_kernels import fetch_factors, pull
-from sceneql.bodies.rigid.tie_chain_kernels import forward, tie_at
-from sceneql.bodies.rigid.tie_kernels import AHEAD, fetch_tie, survey_tie, well
-from sceneql.bodies.rigid.tie_layout import (
+from sceneql.bodies.rigid.matrix.tie_chain_kernels import forward, tie_at
+from sceneql.bodies.rigid.matrix.tie_layout import (
     CHAIN_AT,
     EASE_AT,
     FIRST_ROW,
@@ -26,6 +24,8 @@ from sceneql.bodies.rigid.tie_layout import (
     ROWS_OF,
     TIES,
 )
+from sceneql.bodies.rigid.tie_chain_hold_kernels import fetch_factors, pull
+from sceneql.bodies.rigid.tie_kernels import AHEAD, fetch_tie, survey_tie, well
 from sceneql.bodies.rigid.tie_rows_kernels import AT_C, MOVED, MOVER, ROW
 from sceneql.bodies.rigid.tie_settle_kernels import CLOSED, shift_mover, speed_up, weigh_speeds_of
 from sceneql.bodies.rigid.tie_settle_kernels import settle as settle_any

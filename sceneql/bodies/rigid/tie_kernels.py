@@ -11,7 +11,7 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_layout import (
+from sceneql.bodies.rigid.matrix.tie_layout import (
     EASE_AT,
     FRESH,
     KIND_BITS,
@@ -35,7 +35,7 @@ from sceneql.bodies.rigid.tie_layout import (
     TIES,
     TIES_AT,
 )
-from sceneql.bodies.rigid.tie_matrix_kernels import add_tie, begin_matrix, end_matrix, factor_filled, solve_from
+from sceneql.bodies.rigid.matrix.tie_matrix_kernels import add_tie, begin_matrix, end_matrix, factor_filled, solve_from
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_A,
     AT_BIAS,

@@ -3,8 +3,7 @@
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_kernels import MOST_CORRECTIONS, SHARE, balance, clear, refine, survey
-from sceneql.bodies.rigid.tie_layout import (
+from sceneql.bodies.rigid.matrix.tie_layout import (
     EASE_AT,
     MOVED_AT,
     MOVERS,
@@ -20,6 +19,7 @@ from sceneql.bodies.rigid.tie_layout import (
     TIES,
     TIES_AT,
 )
+from sceneql.bodies.rigid.tie_kernels import MOST_CORRECTIONS, SHARE, balance, clear, refine, survey
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_A,
     AT_C,

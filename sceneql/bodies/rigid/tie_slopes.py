@@ -14,7 +14,7 @@ def tie_slopes(ints: Sequence[int], spare: int, entries: int) -> Slopes:
 
     ``spare``: offset of working memory for one mover.
     """
-    from sceneql.bodies.rigid import tie_layout as ties
+    from sceneql.bodies.rigid.matrix import tie_layout as ties
     from sceneql.bodies.rigid.tie_rows_kernels import FIRST, MOVER, ROW_INTS, SECOND
 
     count = ints[ties.ROWS]

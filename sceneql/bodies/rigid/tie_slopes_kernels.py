@@ -13,7 +13,7 @@ exact in velocities and momenta, in which they are quadratic.
 
 import math
 
-from sceneql.bodies.rigid.tie_layout import EASE_AT, MOVED_AT, MOVERS_AT, ROWS, ROWS_AT
+from sceneql.bodies.rigid.matrix.tie_layout import EASE_AT, MOVED_AT, MOVERS_AT, ROWS, ROWS_AT
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_A,
     AT_BIAS,

@@ -38,10 +38,10 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     """
     import numpy as np
 
-    from sceneql.bodies.rigid import tie_layout as layout
-    from sceneql.bodies.rigid import tie_matrix_kernels as kernels
+    from sceneql.bodies.rigid.matrix import tie_layout as layout
+    from sceneql.bodies.rigid.matrix import tie_matrix_kernels as kernels
+    from sceneql.bodies.rigid.matrix.tie_matrix import RowsOfTie, tie_matrix
     from sceneql.bodies.rigid.tie_kernels import survey
-    from sceneql.bodies.rigid.tie_matrix import RowsOfTie, tie_matrix
     from sceneql.bodies.rigid.tie_rows_kernels import MOVED, MOVER, ROW, ROW_INTS
     from sceneql.bodies.rigid.tie_start import follow
     from sceneql.bodies.rigid.wheels import geared

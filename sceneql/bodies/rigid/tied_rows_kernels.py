@@ -30,6 +30,8 @@ from sceneql.bodies.rigid.drive_kernels import (
     TARGET_AT,
     motion,
 )
+from sceneql.bodies.rigid.matrix.tie_layout import MOVED_AT, MOVERS_AT, ROWS_AT
+from sceneql.bodies.rigid.matrix.tie_layout import ROWS as TIE_ROWS
 from sceneql.bodies.rigid.moved_bodies_kernels import (
     ACTIVE_AT,
     AWAY,
@@ -46,8 +48,6 @@ from sceneql.bodies.rigid.moved_bodies_kernels import (
     TIES_AT,
 )
 from sceneql.bodies.rigid.tie_kernels import survey
-from sceneql.bodies.rigid.tie_layout import MOVED_AT, MOVERS_AT, ROWS_AT
-from sceneql.bodies.rigid.tie_layout import ROWS as TIE_ROWS
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_C,
     AT_J,

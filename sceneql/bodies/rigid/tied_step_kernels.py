@@ -21,6 +21,8 @@ from sceneql.bodies.rigid.drive_kernels import (
     motion,
 )
 from sceneql.bodies.rigid.groups_kernels import MASS
+from sceneql.bodies.rigid.matrix.tie_layout import MOVED_AT, ROWS_AT
+from sceneql.bodies.rigid.matrix.tie_layout import ROWS as TIE_ROWS
 from sceneql.bodies.rigid.moved_bodies_kernels import (
     ACTIVE_AT,
     AWAY,
@@ -42,8 +44,6 @@ from sceneql.bodies.rigid.moved_bodies_kernels import (
 from sceneql.bodies.rigid.point_list import AT_ARM_A, BODY_A, WHERE, WHO
 from sceneql.bodies.rigid.point_list import AT_PUSH as POINT_PUSH
 from sceneql.bodies.rigid.tie_kernels import balance, clear, survey
-from sceneql.bodies.rigid.tie_layout import MOVED_AT, ROWS_AT
-from sceneql.bodies.rigid.tie_layout import ROWS as TIE_ROWS
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_A,
     AT_C,

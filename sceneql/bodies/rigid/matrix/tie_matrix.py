@@ -59,7 +59,7 @@ class TieMatrix:
 
 def tie_matrix(sides: Sequence[RowsOfTie], solved: Sequence[bool]) -> TieMatrix:
     """The matrix of ties, of movers of which some are solved."""
-    from sceneql.bodies.rigid import tie_layout as kernels
+    from sceneql.bodies.rigid.matrix import tie_layout as kernels
 
     of_mover: dict[int, list[int]] = {}
     for k, tie in enumerate(sides):
@@ -102,7 +102,7 @@ def tie_matrix(sides: Sequence[RowsOfTie], solved: Sequence[bool]) -> TieMatrix:
 
 def _chain(sides: Sequence[RowsOfTie], of_mover: dict[int, list[int]]) -> list[list[int]]:
     """Of each tie parent and children (tie_layout), where ties are chains in their order; else nothing."""
-    from sceneql.bodies.rigid.tie_layout import MOST_ROWS
+    from sceneql.bodies.rigid.matrix.tie_layout import MOST_ROWS
 
     if any(tie.count > MOST_ROWS for tie in sides):
         return []
@@ -121,7 +121,7 @@ def _chain(sides: Sequence[RowsOfTie], of_mover: dict[int, list[int]]) -> list[l
 
 def _whole(sides: Sequence[RowsOfTie]) -> tuple[TieMatrix, dict[tuple[int, int], int]]:
     """A dense matrix, of which the upper half is read, and where the blocks of pairs of ties begin."""
-    from sceneql.bodies.rigid.tie_layout import LANES
+    from sceneql.bodies.rigid.matrix.tie_layout import LANES
 
     rows = sides[-1].end
     stride = LANES * -(-rows // LANES)
@@ -143,7 +143,7 @@ def _sparse(sides: Sequence[RowsOfTie], pairs: set[tuple[int, int]]) -> tuple[Ti
     import numpy as np
     from scipy.sparse import csr_array
 
-    from sceneql.bodies.rigid.tie_layout import LANES
+    from sceneql.bodies.rigid.matrix.tie_layout import LANES
     from sceneql.linear.multifrontal.planning import plan
 
     # If all ties have equally many rows, the pattern is that of blocks, whose plan takes far fewer integers.

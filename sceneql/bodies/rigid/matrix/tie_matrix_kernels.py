@@ -8,7 +8,7 @@ share.
 import numpy as np
 from numba import types
 
-from sceneql.bodies.rigid.tie_layout import (
+from sceneql.bodies.rigid.matrix.tie_layout import (
     BEFORE,
     CHAIN_AT,
     DEPENDENT_AT,
@@ -54,7 +54,7 @@ factor_sparse = lazy(f"{SPARSE}:factor_up", F(I, A, A, A, A, A))
 solve_sparse = lazy(f"{SPARSE}:solve_after", types.void(I, A, A, A, types.boolean))
 factor_dense = lazy("sceneql.linear.dense_symmetric_kernels:factor", F(A, N, N, F))
 solve_dense = lazy("sceneql.linear.dense_symmetric_kernels:solve", types.void(A, N, N, A))
-CHAIN = "sceneql.bodies.rigid.tie_chain_kernels"
+CHAIN = "sceneql.bodies.rigid.matrix.tie_chain_kernels"
 eliminate = lazy(f"{CHAIN}:eliminate", types.void(A, I, N, F))
 solve_chain = lazy(f"{CHAIN}:solve", types.void(A, I, types.boolean))
 

@@ -13,7 +13,7 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_layout import (
+from sceneql.bodies.rigid.matrix.tie_layout import (
     CHAIN,
     CHAIN_AT,
     CHILDREN,

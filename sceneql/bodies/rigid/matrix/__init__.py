@@ -1,0 +1,1 @@
+"""The matrix of ties: its layout, its blocks and factors, chains."""
