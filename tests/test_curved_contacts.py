@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import runs
-from sceneql.bodies.rigid.tie_rows_kernels import AT_R, AT_V, AT_W, AT_X, MOVED
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_R, AT_V, AT_W, AT_X, MOVED
 from sceneql.contacts.rigid_exact import contact_kernels as records
 from sceneql.contacts.rigid_exact.curved import column, ellipsoid, ring
 from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_EDGE, ON_FACE, follow

@@ -10,10 +10,10 @@ LAZY = {
         "bodies.elements.laws.viscous_slopes_kernels": "for solids with a retardation"
     },
     "bodies.rigid.moved_bodies_kernels": {
-        "bodies.rigid.tied_rows_kernels": "for bodies that are tied",
-        "bodies.rigid.tied_step_kernels": "for bodies that are tied",
+        "bodies.rigid.ties.tied_rows_kernels": "for bodies that are tied",
+        "bodies.rigid.ties.tied_step_kernels": "for bodies that are tied",
     },
-    "bodies.rigid.tie_rows_kernels": {
+    "bodies.rigid.ties.tie_rows_kernels": {
         "bodies.gears.carried_gear_kernels": "for gears in what turns itself",
         "bodies.gears.gear_kernels": "for gears on what stays",
     },

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import rigid_scenes
-from sceneql.bodies.rigid.tie_rows_kernels import AT_R, AT_V, AT_W, AT_X, MOVED
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_R, AT_V, AT_W, AT_X, MOVED
 from sceneql.contacts.distance import convex
 from sceneql.contacts.rigid_exact import contact_kernels as contact
 from sceneql.contacts.rigid_exact.curved import column

@@ -210,6 +210,15 @@ def _spread(typing, number):
 
 
 @intrinsic
+def _with_lane(typing, value, k, number):
+    def code(context, builder, signature, args):
+        number = context.cast(builder, args[2], signature.args[2], value.dtype)
+        return builder.insert_element(args[0], number, context.cast(builder, args[1], k, types.int32))
+
+    return value(value, k, number), code
+
+
+@intrinsic
 def _guess(typing, s):
     size = s.dtype.bitwidth
 
@@ -277,6 +286,12 @@ def _guess_in_python(s):
     return (whole.type(MAGIC[size]) - (s.view(whole) >> whole.type(1))).view(s.dtype)
 
 
+def _with_lane_in_python(value, k, number):
+    changed = value.copy()
+    changed[k] = number
+    return changed
+
+
 def _folded_in_python(value):
     while len(value) > 1:
         value = value[: len(value) // 2] + value[len(value) // 2 :]
@@ -305,6 +320,8 @@ turn_over = _turn_over_in_python if UNCOMPILED else _turn_over
 of one in target, at to"""
 spread = (lambda number: np.full(BYTES // np.asarray(number).itemsize, number)) if UNCOMPILED else _spread
 """A number in all lanes."""
+with_lane = _with_lane_in_python if UNCOMPILED else _with_lane
+"""with_lane(lanes, k, number): the lanes, but for lane k, which is the number."""
 fma = _fma_in_python if UNCOMPILED else _fma
 """a b + c, rounded once."""
 below = _below_in_python if UNCOMPILED else _below

@@ -149,7 +149,7 @@ class Assembled:
         for force in forces:
             self._add_force(force)
         if self.assembly.ties:
-            from sceneql.bodies.rigid.tie_system import add_ties
+            from sceneql.bodies.rigid.ties.tie_system import add_ties
 
             with self.word(next(name for name, _ in self.island.forces if isinstance(tasks[name].kind, Tie))):
                 add_ties(self.assembly, self.assembly.ties)
@@ -159,7 +159,7 @@ class Assembled:
         for contact in sorted(contacts, key=lambda name: cast(Contact, tasks[name].kind).mutual):
             self._add_contact(contact)
         if any(tie.drive for tie in self.assembly.ties) and not self.assembly.driven and not self.found.errors:
-            from sceneql.bodies.rigid.tied_step import add_bounded_step
+            from sceneql.bodies.rigid.ties.tied_step import add_bounded_step
             from sceneql.contacts.rigid_exact.group import assemble_drives
 
             name = next(tie.name for tie in self.assembly.ties if tie.drive)

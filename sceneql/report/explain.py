@@ -226,7 +226,7 @@ def _redundant(run: IslandRun) -> list[int]:
     """[number of constraints of ties at the start, number of redundant ones]; empty without ties."""
     if not run.assembly.ties:
         return []
-    from sceneql.bodies.rigid.tie_system import redundant
+    from sceneql.bodies.rigid.ties.tie_system import redundant
 
     run.march.rate(0.0, run.march.system.y)
     return list(redundant(run.assembly.ties, run.march.floats))

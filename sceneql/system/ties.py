@@ -90,7 +90,7 @@ class Tied:
     movers: tuple[Mover, Mover]
     rows: tuple[TieRow, ...]
     scratch_at: int
-    """Offset in the floats of the rows' scratch (bodies/rigid/tie_rows_kernels.py)."""
+    """Offset in the floats of the rows' scratch (bodies/rigid/ties/tie_rows_kernels.py)."""
     holds_at: int
     """floats[holds_at]: 1 while it holds, 0 once it is broken."""
     drive: Drive | None = None

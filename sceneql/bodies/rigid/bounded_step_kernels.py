@@ -13,8 +13,8 @@ from sceneql.bodies.rigid.moved_bodies_kernels import (
     move_all,
     place_all,
 )
-from sceneql.bodies.rigid.tied_rows_kernels import begin_ties, drive_of, first_stop, write_ties
-from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, strike, tell_work, tied_to
+from sceneql.bodies.rigid.ties.tied_rows_kernels import begin_ties, drive_of, first_stop, write_ties
+from sceneql.bodies.rigid.ties.tied_step_kernels import again, end_ties, strike, tell_work, tied_to
 from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, gather
 from sceneql.compiled.kernels import kernel
 from sceneql.linear.cones.cone_layout_kernels import ROW

@@ -5,7 +5,7 @@ import math
 
 import sceneql.system.channels as channels
 from sceneql.bodies.rigid.drive_kernels import REST_AT, STIFFNESS_AT, WORK_AT, motion
-from sceneql.bodies.rigid.tie_rows_kernels import AT_FORCE, AT_J, AT_PUSH, ROW
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_FORCE, AT_J, AT_PUSH, ROW
 from sceneql.compiled.kernels import lean
 from sceneql.system.signatures_kernels import AFTER_STEP
 

@@ -58,9 +58,9 @@ class Driven(Joint):
         """Add forces, motor, limits and friction along the motion (as of Joint)."""
         import numpy as np
 
-        from sceneql.bodies.rigid.tie_rows_kernels import ANGLE, MOVED, POINT, ROW
-        from sceneql.bodies.rigid.tie_slopes import drive_slopes
-        from sceneql.bodies.rigid.tie_system import integers
+        from sceneql.bodies.rigid.ties.tie_rows_kernels import ANGLE, MOVED, POINT, ROW
+        from sceneql.bodies.rigid.ties.tie_slopes import drive_slopes
+        from sceneql.bodies.rigid.ties.tie_system import integers
         from sceneql.system import Place
 
         kind, vectors = self.motion(first, second, assembly)

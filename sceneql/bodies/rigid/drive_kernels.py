@@ -5,7 +5,7 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import (
+from sceneql.bodies.rigid.ties.tie_rows_kernels import (
     AT_C,
     AT_J,
     AT_R,

@@ -12,8 +12,8 @@ from sceneql.bodies.rigid.drive_kernels import (
     STIFFNESS_AT,
     motion,
 )
-from sceneql.bodies.rigid.tie_rows_kernels import AT_J, HOLDS, MOVED, MOVER, ROTATION, SCRATCH
-from sceneql.bodies.rigid.tie_slopes_kernels import OWN, difference, entry_of, moves
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_J, HOLDS, MOVED, MOVER, ROTATION, SCRATCH
+from sceneql.bodies.rigid.ties.tie_slopes_kernels import OWN, difference, entry_of, moves
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.system.signatures_kernels import TERM
 

@@ -78,9 +78,9 @@ class Joint(Tie):
         """Add the tie's constraints to an island. Raises ScriptError for bodies that cannot be tied."""
         import numpy as np
 
-        from sceneql.bodies.rigid.tie_rows_kernels import ROW
-        from sceneql.bodies.rigid.tie_system import integers
-        from sceneql.bodies.rigid.tied_step import OFTEN
+        from sceneql.bodies.rigid.ties.tie_rows_kernels import ROW
+        from sceneql.bodies.rigid.ties.tie_system import integers
+        from sceneql.bodies.rigid.ties.tied_step import OFTEN
 
         first, second = sides_of(self.between, assembly)
         if first.mover == second.mover:
@@ -107,7 +107,7 @@ class Joint(Tie):
         """Value of an output of FORCES."""
         import numpy as np
 
-        from sceneql.bodies.rigid.tie_rows_kernels import AT_FORCE, AT_J, AT_PUSH, ROW
+        from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_FORCE, AT_J, AT_PUSH, ROW
 
         at, count, holds = state.ints[:3]
         if output == "broken":
@@ -121,7 +121,7 @@ class Joint(Tie):
 
     def trouble(self, state: ModelState) -> str:
         """Text on the distance or angle by which the tie was violated; empty if it was held."""
-        from sceneql.bodies.rigid.tie_rows_kernels import AT_OPEN, ROW
+        from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_OPEN, ROW
 
         at, count = state.ints[:2]
         opened = float(state.floats[at : at + ROW * count].reshape(count, ROW)[:, AT_OPEN].max())
@@ -131,7 +131,7 @@ class Joint(Tie):
 
     def _arm(self, state: ModelState) -> Floats:
         """Vector (3,) [m] from the position of the first body to the tie's point on it."""
-        from sceneql.bodies.rigid.tie_rows_kernels import ROTATION, TURN
+        from sceneql.bodies.rigid.ties.tie_rows_kernels import ROTATION, TURN
         from sceneql.shapes.placement import rotation_matrix
 
         arm_at, mover = state.ints[3], state.ints[4:]

@@ -23,8 +23,8 @@ its friction; whether no other contact has told of these ties before it."""
 AWAY, STEADY, PRESSED, STRUCK = 0.0, 1.0, 2.0, 3.0
 """Ways to step of a group, at ACTIVE_AT."""
 
-_ROWS = "sceneql.bodies.rigid.tied_rows_kernels"
-_STEP = "sceneql.bodies.rigid.tied_step_kernels"
+_ROWS = "sceneql.bodies.rigid.ties.tied_rows_kernels"
+_STEP = "sceneql.bodies.rigid.ties.tied_step_kernels"
 begin_ties = lazy(f"{_ROWS}:begin_ties", types.void(F, A, A, A, I))
 first_stop = lazy(f"{_ROWS}:first_stop", types.float64(F, A, A, A, I))
 rouse = lazy(f"{_ROWS}:rouse", types.void(A, I, N))

@@ -5,19 +5,10 @@ With the velocities closed behind the step (tie_settle_kernels) this is RATTLE (
 24-34), symplectic and reversible in time where forces depend on the places alone.
 """
 
-from sceneql.bodies.rigid.tie_kernels import survey
-from sceneql.bodies.rigid.tie_matrix_kernels import (
-    KEPT,
-    KEPT_AT,
-    MOVED_AT,
-    MOVERS_AT,
-    RIGHT_AT,
-    ROWS,
-    ROWS_AT,
-    factor,
-    solve,
-)
-from sceneql.bodies.rigid.tie_rows_kernels import (
+from sceneql.bodies.rigid.ties.tie_kernels import survey
+from sceneql.bodies.rigid.ties.tie_layout import KEPT, KEPT_AT, MOVED_AT, MOVERS_AT, RIGHT_AT, ROWS, ROWS_AT
+from sceneql.bodies.rigid.ties.tie_matrix_kernels import factor, solve
+from sceneql.bodies.rigid.ties.tie_rows_kernels import (
     AT_C,
     AT_J,
     AT_MASS,
@@ -32,7 +23,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     SCRATCH,
     VELOCITY,
 )
-from sceneql.bodies.rigid.tie_settle_kernels import CLOSED
+from sceneql.bodies.rigid.ties.tie_settle_kernels import CLOSED
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_FREE_MOTION, free_motion_at
 from sceneql.stepping.splitting_kernels import drift

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sceneql.bodies.rigid.tie_system import MOST, integers
+from sceneql.bodies.rigid.ties.tie_system import MOST, integers
 from sceneql.system import Led, Place
 
 if TYPE_CHECKING:
@@ -29,8 +29,8 @@ def singular(assembly: Assembly) -> tuple[list[Tied], list[Tied]]:
     """
     import numpy as np
 
-    from sceneql.bodies.rigid.tie_kernels import survey
-    from sceneql.bodies.rigid.tie_rows_kernels import AT_BIAS, AT_J, ROW
+    from sceneql.bodies.rigid.ties.tie_kernels import survey
+    from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_BIAS, AT_J, ROW
 
     rows = [(tie, k) for tie in assembly.ties for k in range(len(tie.rows))]
     if not 0 < len(rows) <= MOST or any(isinstance(mover, Led) for tie in assembly.ties for mover in tie.movers):

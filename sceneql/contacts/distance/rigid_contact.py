@@ -47,7 +47,7 @@ def assemble(
     compile_beside(ANSWERS)  # while what finds contacts is compiled here
 
     from sceneql.bodies.rigid.point_list import WHO
-    from sceneql.bodies.rigid.tied_step import body_integers, tied_step
+    from sceneql.bodies.rigid.ties.tied_step import body_integers, tied_step
     from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS
     from sceneql.contacts.distance import convex, rigid_layout
     from sceneql.contacts.distance.depths import Overlaps

@@ -15,8 +15,8 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_MASS, AT_V, AT_W, AT_X, cross, put, turned
-from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_INVERSE, AT_MASS, AT_V, AT_W, AT_X, cross, put, turned
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_R as AT_TURN
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.system.signatures_kernels import A, F, N
 

@@ -10,7 +10,7 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import AT_V, AT_W
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_V, AT_W
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.convex import CORE, SHAPE
 from sceneql.contacts.distance.core_kernels import FLOATS, KIND, REACH

@@ -5,7 +5,7 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import AT_X, put
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_X, put
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.distance.convex import CORE
 from sceneql.contacts.distance.core_kernels import (

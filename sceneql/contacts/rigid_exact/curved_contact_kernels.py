@@ -14,8 +14,8 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
-from sceneql.bodies.rigid.tie_rows_kernels import AT_V, AT_W, AT_X, cross, put, turned
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_R as AT_TURN
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_V, AT_W, AT_X, cross, put, turned
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.distance.core_kernels import REACH

@@ -7,7 +7,7 @@ line with a radius, and an end is that of the line or of the edge.
 
 import math
 
-from sceneql.bodies.rigid.tie_rows_kernels import put
+from sceneql.bodies.rigid.ties.tie_rows_kernels import put
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.distance.convex import CORE

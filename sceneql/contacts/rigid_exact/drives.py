@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from sceneql.bodies.rigid.tie_system import integers
-from sceneql.bodies.rigid.tied_step import drive_integers, moves
+from sceneql.bodies.rigid.ties.tie_system import integers
+from sceneql.bodies.rigid.ties.tied_step import drive_integers, moves
 from sceneql.bodies.time_shift import exact_rate, rate_of_change
 from sceneql.island.breakpoints import Breakpoints
 from sceneql.kinds import Value
@@ -32,7 +32,7 @@ def drives_of(
     these ties. Raises ScriptError for a motor whose target has no known rate, or jumps.
     """
     from sceneql.bodies.rigid.drive_kernels import ROW_AT
-    from sceneql.bodies.rigid.tie_rows_kernels import AT_J, SCRATCH
+    from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_J, SCRATCH
     from sceneql.contacts.rigid_exact.stop_kernels import DRIVEN, EFFORT_AT, FIRST_MOVER, GIVEN_AT, SIZE
     from sceneql.contacts.rigid_exact.stop_kernels import ROW_AT as OWN_ROW_AT
 

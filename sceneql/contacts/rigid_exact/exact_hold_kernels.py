@@ -5,7 +5,7 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import (
+from sceneql.bodies.rigid.ties.tie_rows_kernels import (
     AT_A,
     AT_FORCE,
     AT_V,
@@ -20,7 +20,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     put,
     see,
 )
-from sceneql.bodies.rigid.tie_settle_kernels import shift_mover
+from sceneql.bodies.rigid.ties.tie_settle_kernels import shift_mover
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.rigid_exact.contact_kernels import (
     AIMED,

@@ -3,8 +3,8 @@
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_kernels import survey
-from sceneql.bodies.rigid.tie_rows_kernels import (
+from sceneql.bodies.rigid.ties.tie_kernels import survey
+from sceneql.bodies.rigid.ties.tie_rows_kernels import (
     AT_A,
     AT_BIAS,
     AT_C,

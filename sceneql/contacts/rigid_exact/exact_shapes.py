@@ -228,7 +228,7 @@ def gap_of(curved: Convex, place: Floats, other: Convex, there: Floats, numbers:
 
     ``numbers``: floats of the island.
     """
-    from sceneql.bodies.rigid.tie_rows_kernels import AT_R, AT_X, MOVED
+    from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_R, AT_X, MOVED
     from sceneql.contacts.rigid_exact.contact_kernels import RECORD
     from sceneql.contacts.rigid_exact.curved_find_kernels import (
         COLUMN_B,

@@ -3,7 +3,7 @@
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_MASS, MOVER, POSITION
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_INVERSE, AT_MASS, MOVER, POSITION
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.rigid_exact.exact_law_kernels import MOMENT, VECTORS, solve_law
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (

@@ -51,9 +51,9 @@ def assemble(
     """
     import numpy as np
 
-    from sceneql.bodies.rigid.tie_rows_kernels import MOVED, POSITION
-    from sceneql.bodies.rigid.tie_rows_kernels import ROW as TIE_ROW
-    from sceneql.bodies.rigid.tie_system import integers
+    from sceneql.bodies.rigid.ties.tie_rows_kernels import MOVED, POSITION
+    from sceneql.bodies.rigid.ties.tie_rows_kernels import ROW as TIE_ROW
+    from sceneql.bodies.rigid.ties.tie_system import integers
     from sceneql.contacts.distance import convex
     from sceneql.contacts.rigid_exact import (
         contact_kernels,
@@ -161,8 +161,8 @@ def assemble_drives(assembly: Assembly) -> bool:
     It takes them where the solver chooses its steps by a tolerance and is explicit, up to the instant at which it finds
     no way. The reason is kept for `explain`.
     """
-    from sceneql.bodies.rigid.tie_system import integers
-    from sceneql.bodies.rigid.tied_step import moves
+    from sceneql.bodies.rigid.ties.tie_system import integers
+    from sceneql.bodies.rigid.ties.tied_step import moves
 
     held = {integers(mover) for tie in assembly.ties for mover in tie.movers if moves(mover, assembly)}
     none, why = Value(Number(0.0)), ""

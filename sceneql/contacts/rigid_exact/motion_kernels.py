@@ -20,7 +20,7 @@ from sceneql.bodies.rigid.drive_kernels import (
     TARGET_AT,
     motion,
 )
-from sceneql.bodies.rigid.tie_rows_kernels import AT_BIAS, AT_J, AT_W, HOLDS, KIND, MOVED, POINT, SCRATCH, cross
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_BIAS, AT_J, AT_W, HOLDS, KIND, MOVED, POINT, SCRATCH, cross
 from sceneql.compiled.kernels import kernel
 from sceneql.contacts.rigid_exact import stop_kernels as own
 from sceneql.contacts.rigid_exact.contact_kernels import dot, three

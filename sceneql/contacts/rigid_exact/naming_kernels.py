@@ -3,8 +3,8 @@
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
-from sceneql.bodies.rigid.tie_rows_kernels import AT_X, cross, put
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_R as AT_TURN
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_X, cross, put
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.convex import CORE, SHAPE
 from sceneql.contacts.distance.core_kernels import (

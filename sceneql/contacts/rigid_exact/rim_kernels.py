@@ -11,8 +11,8 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
-from sceneql.bodies.rigid.tie_rows_kernels import put, turned
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_R as AT_TURN
+from sceneql.bodies.rigid.ties.tie_rows_kernels import put, turned
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.rigid_exact.contact_kernels import (
     BIAS,

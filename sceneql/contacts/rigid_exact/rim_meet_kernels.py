@@ -5,8 +5,8 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
-from sceneql.bodies.rigid.tie_rows_kernels import put, turned
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_R as AT_TURN
+from sceneql.bodies.rigid.ties.tie_rows_kernels import put, turned
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.core_kernels import FLOATS
 from sceneql.contacts.rigid_exact.contact_kernels import LINE_A, LINE_B, OF, OWN_B, RECORD, SHAPE_A, SHAPE_B, SIGN, dot

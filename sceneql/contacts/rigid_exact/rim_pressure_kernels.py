@@ -9,7 +9,7 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_MASS, AT_X, cross, put
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_INVERSE, AT_MASS, AT_X, cross, put
 from sceneql.bodies.rigid.velocity_step_kernels import spin_by
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.rigid_exact.contact_kernels import (

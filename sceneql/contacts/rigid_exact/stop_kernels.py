@@ -9,7 +9,7 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import AT_X, put
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_X, put
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.rigid_exact.contact_kernels import (
     BIAS,

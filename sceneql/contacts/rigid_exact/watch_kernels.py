@@ -6,7 +6,7 @@ import math
 from numba import types
 
 from sceneql.bodies.rigid.rigid_kernels import to_world
-from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_R, AT_X, MOVED
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_INVERSE, AT_R, AT_X, MOVED
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.convex import CORE, HALF_SPACE, SHAPE
 from sceneql.contacts.distance.core_kernels import ADVANCES, FACES, FLOATS, INTS, KIND, POINTS, RADIUS, REACH

@@ -69,11 +69,11 @@ class Adams(Solver):
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
     """Tolerances, the highest order, and the room of the kernels."""
-    from sceneql.words.solvers.adams_kernels import HEAD, VECTORS
+    from sceneql.words.solvers.adams_kernels import HEAD, LANES, VECTORS
 
     control = stepper.control
     return Prepared(
         (control.tolerance, control.absolute),
         (int(control.adaptive), stepper.method.order - 1),
-        HEAD + VECTORS * len(system.y),
+        HEAD + VECTORS * LANES * -(-len(system.y) // LANES),
     )

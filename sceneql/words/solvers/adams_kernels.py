@@ -11,7 +11,7 @@ integrals of the products are the weights of the step, and up to any s those of 
 left to the march; it enters the differences when the next step begins, phi_j becoming phi_{j-1} - phi*_{j-1}.
 
 ``numbers`` = (1 if steps follow the error, the highest k). ``settings`` = (relative tolerance, absolute tolerance).
-``work``: scalars (NEXT to COLUMN), then vectors of y's size (PHI to LOW_END).
+``work``: scalars (NEXT to COLUMN), then vectors (PHI to LOW_END), of y's size and zeros up to a whole number of LANES.
 """
 
 import math
@@ -20,6 +20,7 @@ from numba import types
 
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.lanes_kernels import load, spread, store
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.compiled.vectors_kernels import same
 from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I, N
@@ -37,6 +38,8 @@ GAPS, BETAS, WEIGHTS, COLUMN, HEAD = range(8, 8 + 5 * (MOST + 2), MOST + 2)
 PHI, LAST, START, END, SLOPE, LOW, LOW_END, VECTORS = 0, *range(MOST + 2, MOST + 9)
 """Vectors of work: the differences at the step's start; phi_k; the step's ends; the rate at the predicted end; rounding
 errors of the ends (compensated summation, Kahan 1965)."""
+
+LANES = 8
 
 AIM = 0.3
 """Error of the next step that its length is chosen for."""
@@ -67,24 +70,29 @@ def integrate(theta, h, k, work):
 
 
 @lean_inlined
+def room_of(n):
+    """Numbers of a vector of work, for n entries of y."""
+    return LANES * ((n + LANES - 1) // LANES)
+
+
+@lean_inlined
 def enter(rate0, work, vectors):
     """Enter the rate at the end of the latest step into the differences, and its length into the gaps."""
-    n = rate0.size
+    n = room_of(rate0.size)
     carried = vectors[SLOPE * n :]
-    for i in range(n):
+    for i in range(rate0.size):
         carried[i] = rate0[i]
     known = min(int(work[KNOWN]), int(work[USED])) + 1
-    for j in range(known):
-        beta, phi = work[BETAS + j], vectors[(PHI + j) * n :]
-        for i in range(n):
-            old = beta * phi[i]
-            phi[i] = carried[i]
-            carried[i] -= old
-    phi = vectors[(PHI + known) * n :]
-    low, low_end = vectors[LOW * n :], vectors[LOW_END * n :]
-    for i in range(n):
-        phi[i] = carried[i]
-        low[i] = low_end[i]
+    betas = work[BETAS:]
+    for i in range(0, n, LANES):
+        rest = load(carried, i)
+        for j in range(known):
+            at = (PHI + j) * n + i
+            old = betas[j] * load(vectors, at)
+            store(vectors, at, rest)
+            rest = rest - old
+        store(vectors, (PHI + known) * n + i, rest)
+        store(vectors, LOW * n + i, load(vectors, LOW_END * n + i))
     for j in range(MOST + 1, 0, -1):
         work[GAPS + j] = work[GAPS + j - 1] + work[TRIED]
     work[KNOWN] = known
@@ -94,17 +102,18 @@ def enter(rate0, work, vectors):
 @lean_inlined
 def begin(t, y0, rate0, work, vectors, settled):
     """Whether this try goes on from the latest step, repeats it or begins anew; returns the number of rates to use."""
-    n = y0.size
-    if work[USED] > 0.0 and t == work[BEGAN] + work[TRIED] and (settled or same(y0, vectors[END * n : (END + 1) * n])):
+    n = room_of(y0.size)
+    start, end = vectors[START * n : START * n + y0.size], vectors[END * n : END * n + y0.size]
+    if work[USED] > 0.0 and t == work[BEGAN] + work[TRIED] and (settled or same(y0, end)):
         enter(rate0, work, vectors)
-    elif not (work[USED] > 0.0 and t == work[BEGAN] and same(y0, vectors[START * n : (START + 1) * n])):
+    elif not (work[USED] > 0.0 and t == work[BEGAN] and same(y0, start)):
         work[KNOWN] = work[FAILED] = work[GAPS] = 0.0
         work[RISES] = work[WANTED] = 1.0
-        for i in range(n):
+        for i in range(y0.size):
             vectors[PHI * n + i] = rate0[i]
             vectors[LOW * n + i] = 0.0
-    for i in range(n):
-        vectors[START * n + i] = y0[i]
+    for i in range(y0.size):
+        start[i] = y0[i]
     work[BEGAN] = t
     work[USED] = min(work[WANTED], work[KNOWN] + 1.0)
     return int(work[USED])
@@ -158,7 +167,7 @@ def choose(h, k, error, below, far_below, above, work, numbers):
 @lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; the error of the order below in the root mean square of all entries."""
-    n = y0.size
+    count, n = y0.size, room_of(y0.size)
     rate = rate_at(functions[AT_RATE])
     vectors = work[HEAD:]
     k = begin(t, y0, rate0, work, vectors, floats[channels.SETTLED] != 0.0)
@@ -170,17 +179,16 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         work[BETAS + j] = beta
     integrate(1.0, h, k + 1, work)
     weights, betas = work[WEIGHTS:], work[BETAS:]
-    slope, last = vectors[SLOPE * n : (SLOPE + 1) * n], vectors[LAST * n : (LAST + 1) * n]
-    end = vectors[END * n : (END + 1) * n]
-    for i in range(n):
-        end[i] = last[i] = 0.0
-    for j in range(k - 1, -1, -1):
-        phi, beta, weight = vectors[(PHI + j) * n :], betas[j], weights[j]
-        for i in range(n):
-            part = beta * phi[i]
-            end[i] += weight * part
-            last[i] += part
-    for i in range(n):
+    slope, last = vectors[SLOPE * n : SLOPE * n + count], vectors[LAST * n : LAST * n + count]
+    end = vectors[END * n : END * n + count]
+    for i in range(0, n, LANES):
+        ends = lasts = spread(0.0)
+        for j in range(k - 1, -1, -1):
+            part = betas[j] * load(vectors, (PHI + j) * n + i)
+            ends, lasts = ends + weights[j] * part, lasts + part
+        store(vectors, END * n + i, ends)
+        store(vectors, LAST * n + i, lasts)
+    for i in range(count):
         y1[i] = y0[i] + h * end[i]
     rate(t + h, y1, slope, floats, ints)
     second, third = max(k - 2, 0), vectors[(PHI + k) * n :]
@@ -190,7 +198,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     low, low_end = vectors[LOW * n :], vectors[LOW_END * n :]
     weight, absolute, relative = weights[k], settings[ABSOLUTE], settings[RELATIVE]
     error = below = far_below = above = 0.0
-    for i in range(n):
+    for i in range(count):
         phi = slope[i] - last[i]
         last[i] = phi
         change = h * (end[i] + weight * phi) - low[i]
@@ -205,10 +213,10 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         below += (lower * scale) ** 2
         far_below += (lowest * scale) ** 2
         above += (higher * scale) ** 2
-    error = h * abs(weights[k - 1] - weight) * math.sqrt(error / n)
-    below = h * abs(weights[max(k - 2, 0)] - weights[k - 1]) * math.sqrt(below / n)
-    far_below = h * abs(weights[max(k - 3, 0)] - weights[second]) * math.sqrt(far_below / n)
-    above = h * abs(weight - weights[k + 1]) * math.sqrt(above / n) if all_known else math.inf
+    error = h * abs(weights[k - 1] - weight) * math.sqrt(error / count)
+    below = h * abs(weights[max(k - 2, 0)] - weights[k - 1]) * math.sqrt(below / count)
+    far_below = h * abs(weights[max(k - 3, 0)] - weights[second]) * math.sqrt(far_below / count)
+    above = h * abs(weight - weights[k + 1]) * math.sqrt(above / count) if all_known else math.inf
     choose(h, k, error, below, far_below, above, work, numbers)
     return error if numbers[CONTROLLED] != 0 else 0.0
 
@@ -216,15 +224,15 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
 @lean(DENSE)
 def dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
     """The integral of the step's own polynomial: of the step's order, and its very ends."""
-    n = y0.size
+    n = room_of(y0.size)
     k = int(work[USED])
     integrate(theta, h, k, work)
     vectors = work[HEAD:]
-    for i in range(n):
+    for i in range(y0.size):
         out[i] = work[WEIGHTS + k] * vectors[LAST * n + i]
     for j in range(k):
         weight = work[WEIGHTS + j] * work[BETAS + j]
-        for i in range(n):
+        for i in range(y0.size):
             out[i] += weight * vectors[(PHI + j) * n + i]
-    for i in range(n):
+    for i in range(y0.size):
         out[i] = y0[i] + h * out[i]

@@ -41,10 +41,10 @@ from sceneql.bodies.rigid.moved_bodies_kernels import (
 )
 from sceneql.bodies.rigid.point_list import AT_ARM_A, BODY_A, WHERE, WHO
 from sceneql.bodies.rigid.point_list import AT_PUSH as POINT_PUSH
-from sceneql.bodies.rigid.tie_kernels import balance, clear, survey
-from sceneql.bodies.rigid.tie_matrix_kernels import MOVED_AT, ROWS_AT
-from sceneql.bodies.rigid.tie_matrix_kernels import ROWS as TIE_ROWS
-from sceneql.bodies.rigid.tie_rows_kernels import (
+from sceneql.bodies.rigid.ties.tie_kernels import balance, clear, survey
+from sceneql.bodies.rigid.ties.tie_layout import MOVED_AT, ROWS_AT
+from sceneql.bodies.rigid.ties.tie_layout import ROWS as TIE_ROWS
+from sceneql.bodies.rigid.ties.tie_rows_kernels import (
     AT_A,
     AT_C,
     AT_FORCE,
@@ -61,7 +61,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     put,
     turned,
 )
-from sceneql.bodies.rigid.tied_rows_kernels import (
+from sceneql.bodies.rigid.ties.tied_rows_kernels import (
     DRIVE,
     DRIVE_GROUP,
     GROUP,

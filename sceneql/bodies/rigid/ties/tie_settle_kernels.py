@@ -3,8 +3,8 @@
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_kernels import MOST_CORRECTIONS, SHARE, balance, clear, refine, survey
-from sceneql.bodies.rigid.tie_matrix_kernels import (
+from sceneql.bodies.rigid.ties.tie_kernels import MOST_CORRECTIONS, SHARE, balance, clear, refine, survey
+from sceneql.bodies.rigid.ties.tie_layout import (
     EASE_AT,
     MOVED_AT,
     MOVERS,
@@ -20,7 +20,7 @@ from sceneql.bodies.rigid.tie_matrix_kernels import (
     TIES,
     TIES_AT,
 )
-from sceneql.bodies.rigid.tie_rows_kernels import (
+from sceneql.bodies.rigid.ties.tie_rows_kernels import (
     AT_A,
     AT_C,
     AT_OPEN,
@@ -40,7 +40,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     SCRATCH,
     VELOCITY,
 )  # fmt: skip
-from sceneql.compiled.kernels import lean
+from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.system.signatures_kernels import AFTER_STEP, A, F, I, N
 
 CLOSED = 1e-14
@@ -77,26 +77,45 @@ def shift(y, floats, ints):
         shift_mover(y, floats, ints, ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m)
 
 
+@lean_inlined
+def speed_up(y, floats, ints, at, to):
+    """Change the velocities of the mover of ints[at:] as floats[to + AT_A:] and what it was pushed say."""
+    if ints[at + POSITION] >= 0:
+        for c in range(3):
+            y[ints[at + VELOCITY] + c] += floats[to + AT_A + c]
+        if ints[at + ROTATION] >= 0:
+            for c in range(3):
+                y[ints[at + MOMENTUM] + c] += floats[to + AT_PUSHED + 3 + c]
+
+
+@lean(F(A, I, N, N))
+def weigh_speeds_of(floats, ints, tie, row):
+    """`weigh_speeds` of a tie, from ``row`` of the right hand side on."""
+    worst = 0.0
+    which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
+    first, second, to = ints[MOVED_AT] + MOVED * which[ONE], ints[MOVED_AT] + MOVED * which[OTHER], which[ROWS_FROM]
+    one, two = floats[first : first + MOVED], floats[second : second + MOVED]
+    for k in range(ints[RIGHT_AT] + row, ints[RIGHT_AT] + row + which[ROWS_OF]):
+        own = floats[to : to + ROW]
+        size = 0.0
+        for c in range(3):
+            size += abs(own[c] * one[AT_V + c]) + abs(own[3 + c] * one[AT_W + c])
+            size += abs(own[6 + c] * two[AT_V + c]) + abs(own[9 + c] * two[AT_W + c])
+        own[AT_SIZE], floats[k] = size, -own[AT_SPEED]
+        if abs(own[AT_SPEED]) > worst * size:
+            worst = abs(own[AT_SPEED]) / size
+        to += ROW
+    return worst
+
+
 @lean(F(A, I))
 def weigh_speeds(floats, ints):
     """Write the size of what the AT_SPEED of each row is a sum of to AT_SIZE, and less that speed to the right hand
     side; the largest speed against its size."""
-    worst, row = 0.0, ints[RIGHT_AT]
+    worst, row = 0.0, 0
     for tie in range(ints[TIES]):
-        which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
-        first, second, to = ints[MOVED_AT] + MOVED * which[ONE], ints[MOVED_AT] + MOVED * which[OTHER], which[ROWS_FROM]
-        one, two = floats[first : first + MOVED], floats[second : second + MOVED]
-        for _ in range(which[ROWS_OF]):
-            own = floats[to : to + ROW]
-            size = 0.0
-            for c in range(3):
-                size += abs(own[c] * one[AT_V + c]) + abs(own[3 + c] * one[AT_W + c])
-                size += abs(own[6 + c] * two[AT_V + c]) + abs(own[9 + c] * two[AT_W + c])
-            own[AT_SIZE], floats[row] = size, -own[AT_SPEED]
-            if abs(own[AT_SPEED]) > worst * size:
-                worst = abs(own[AT_SPEED]) / size
-            to += ROW
-            row += 1
+        worst = max(worst, weigh_speeds_of(floats, ints, tie, row))
+        row += ints[ints[TIES_AT] + SIDES * tie + ROWS_OF]
     return worst
 
 
@@ -128,13 +147,6 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         else:
             balance(floats, ints, AT_SPEED, AT_SIZE)
         for m in range(ints[MOVERS]):
-            at = ints[MOVERS_AT] + MOVER * m
-            mover = ints[MOVED_AT] + MOVED * m
-            if ints[at + POSITION] >= 0:
-                for c in range(3):
-                    y1[ints[at + VELOCITY] + c] += floats[mover + AT_A + c]
-                if ints[at + ROTATION] >= 0:
-                    for c in range(3):
-                        y1[ints[at + MOMENTUM] + c] += floats[mover + AT_PUSHED + 3 + c]
+            speed_up(y1, floats, ints, ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m)
         changed = True
     return changed

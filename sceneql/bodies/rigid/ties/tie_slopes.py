@@ -14,8 +14,8 @@ def tie_slopes(ints: Sequence[int], spare: int, entries: int) -> Slopes:
 
     ``spare``: offset of working memory for one mover.
     """
-    from sceneql.bodies.rigid import tie_matrix_kernels as ties
-    from sceneql.bodies.rigid.tie_rows_kernels import FIRST, MOVER, ROW_INTS, SECOND
+    from sceneql.bodies.rigid.ties import tie_layout as ties
+    from sceneql.bodies.rigid.ties.tie_rows_kernels import FIRST, MOVER, ROW_INTS, SECOND
 
     count = ints[ties.ROWS]
     places: list[tuple[int, int]] = []
@@ -30,12 +30,12 @@ def tie_slopes(ints: Sequence[int], spare: int, entries: int) -> Slopes:
         ]
         places += [(given if column >= 0 else -1, column) for column in acting]
         places.append((own, own))
-    return _slopes("sceneql.bodies.rigid.tie_slopes_kernels:hold", places, [*ints, spare], count)
+    return _slopes("sceneql.bodies.rigid.ties.tie_slopes_kernels:hold", places, [*ints, spare], count)
 
 
 def drive_slopes(ints: Sequence[int]) -> Slopes:
     """The Jacobian of the term `drive_kernels.drive` with the integers ``ints``."""
-    from sceneql.bodies.rigid.tie_rows_kernels import MOVER
+    from sceneql.bodies.rigid.ties.tie_rows_kernels import MOVER
 
     moved, acting = _numbers([ints[:MOVER], ints[MOVER : 2 * MOVER]])
     columns = [column for k in range(2) for some in (moved[7 * k :][:7], acting[6 * k :][:6]) for column in some]
@@ -48,7 +48,7 @@ def _numbers(movers: Sequence[Sequence[int]]) -> tuple[list[int], list[int]]:
 
     -1 for quantities that a mover lacks.
     """
-    from sceneql.bodies.rigid.tie_rows_kernels import MOMENTUM, POSITION, ROTATION, VELOCITY
+    from sceneql.bodies.rigid.ties.tie_rows_kernels import MOMENTUM, POSITION, ROTATION, VELOCITY
 
     def of(*parts: tuple[int, int]) -> list[int]:
         return [

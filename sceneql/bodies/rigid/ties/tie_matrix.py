@@ -49,13 +49,17 @@ class TieMatrix:
     """Values that are 1 throughout, where it is not whole: of ties of which no mover is solved, on the diagonal."""
     marks: list[int] = field(default_factory=list)
     """Of each tie (tie_matrix_kernels)."""
+    factors: int = 0
+    """Number of its factors, where ties are chains."""
+    chain: list[list[int]] = field(default_factory=list)
+    """Of each tie of chains: parent and children (tie_layout)."""
     shared: list[list[int]] = field(default_factory=list)
     """Integers of each mover that is solved (tie_matrix_kernels), but for BEFORE; HALF is 0 or 1."""
 
 
 def tie_matrix(sides: Sequence[RowsOfTie], solved: Sequence[bool]) -> TieMatrix:
     """The matrix of ties, of movers of which some are solved."""
-    from sceneql.bodies.rigid import tie_matrix_kernels as kernels
+    from sceneql.bodies.rigid.ties import tie_layout as kernels
 
     of_mover: dict[int, list[int]] = {}
     for k, tie in enumerate(sides):
@@ -63,15 +67,24 @@ def tie_matrix(sides: Sequence[RowsOfTie], solved: Sequence[bool]) -> TieMatrix:
             if solved[mover]:
                 of_mover.setdefault(mover, []).append(k)
     pairs = {pair for some in of_mover.values() for pair in product(some, some)} | {(k, k) for k in range(len(sides))}
-    made, places = _whole(sides) if sides[-1].end <= WHOLE else _sparse(sides, pairs)
+    chain = _chain(sides, of_mover)
+    if chain:
+        factors = sum(kernels.of_chain(tie.count) for tie in sides)
+        made = TieMatrix(0, None, factors=factors, chain=chain)
+        places: dict[tuple[int, int], int] = {}
+    else:
+        made, places = _whole(sides) if sides[-1].end <= WHOLE else _sparse(sides, pairs)
     last = {mover: some[-1] for mover, some in of_mover.items()}
     order = sorted(of_mover, key=lambda mover: (last[mover], sides[last[mover]].pair.index(mover)))
     for k, tie in enumerate(sides):
         fresh = sum(kernels.FRESH << side for side in range(2) if tie.pair[side] >= tie.known)
         ended = sum(kernels.LAST << side for side in range(2) if last.get(tie.pair[side]) == k)
-        made.marks.append(fresh + ended)
+        of = sum(kernels.SOLVED << side for side in range(2) if solved[tie.pair[side]])
+        made.marks.append(fresh + ended + of)
         if made.plan is not None and not any(solved[mover] for mover in tie.pair):
             made.alone += [places[k, k] + (tie.count + 1) * i for i in range(tie.count)]
+    if chain:
+        return made
     ends = {k: mover for mover in order for k in of_mover[mover]}  # the last mover of each tie
     new = set(places) if made.plan is not None else set()
     for number, mover in enumerate(order):
@@ -87,9 +100,28 @@ def tie_matrix(sides: Sequence[RowsOfTie], solved: Sequence[bool]) -> TieMatrix:
     return made
 
 
+def _chain(sides: Sequence[RowsOfTie], of_mover: dict[int, list[int]]) -> list[list[int]]:
+    """Of each tie parent and children (tie_layout), where ties are chains in their order; else nothing."""
+    from sceneql.bodies.rigid.ties.tie_layout import MOST_ROWS
+
+    if any(tie.count > MOST_ROWS for tie in sides):
+        return []
+    found = [[-1, -1, -1] for _ in sides]
+    for mover, own in of_mover.items():
+        if len(set(own)) < len(own) or len(own) > 2:
+            return []
+        if len(own) == 2:
+            before, behind = own
+            if found[before][0] >= 0:
+                return []
+            found[before][0] = behind
+            found[behind][1 + sides[behind].pair.index(mover)] = 2 * before + sides[before].pair.index(mover)
+    return found
+
+
 def _whole(sides: Sequence[RowsOfTie]) -> tuple[TieMatrix, dict[tuple[int, int], int]]:
     """A dense matrix, of which the upper half is read, and where the blocks of pairs of ties begin."""
-    from sceneql.bodies.rigid.tie_matrix_kernels import LANES
+    from sceneql.bodies.rigid.ties.tie_layout import LANES
 
     rows = sides[-1].end
     stride = LANES * -(-rows // LANES)
@@ -111,7 +143,7 @@ def _sparse(sides: Sequence[RowsOfTie], pairs: set[tuple[int, int]]) -> tuple[Ti
     import numpy as np
     from scipy.sparse import csr_array
 
-    from sceneql.bodies.rigid.tie_matrix_kernels import LANES
+    from sceneql.bodies.rigid.ties.tie_layout import LANES
     from sceneql.linear.multifrontal.planning import plan
 
     # If all ties have equally many rows, the pattern is that of blocks, whose plan takes far fewer integers.

@@ -45,10 +45,10 @@ from sceneql.bodies.rigid.moved_bodies_kernels import (
     TIES,
     TIES_AT,
 )
-from sceneql.bodies.rigid.tie_kernels import survey
-from sceneql.bodies.rigid.tie_matrix_kernels import MOVED_AT, MOVERS_AT, ROWS_AT
-from sceneql.bodies.rigid.tie_matrix_kernels import ROWS as TIE_ROWS
-from sceneql.bodies.rigid.tie_rows_kernels import (
+from sceneql.bodies.rigid.ties.tie_kernels import survey
+from sceneql.bodies.rigid.ties.tie_layout import MOVED_AT, MOVERS_AT, ROWS_AT
+from sceneql.bodies.rigid.ties.tie_layout import ROWS as TIE_ROWS
+from sceneql.bodies.rigid.ties.tie_rows_kernels import (
     AT_C,
     AT_J,
     AT_SPEED,

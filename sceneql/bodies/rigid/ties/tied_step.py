@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from sceneql.bodies.rigid.tie_system import integers
+from sceneql.bodies.rigid.ties.tie_system import integers
 from sceneql.system import Place
 
 if TYPE_CHECKING:

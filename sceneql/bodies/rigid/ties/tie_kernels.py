@@ -11,7 +11,7 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_matrix_kernels import (
+from sceneql.bodies.rigid.ties.tie_layout import (
     EASE_AT,
     FRESH,
     KIND_BITS,
@@ -34,13 +34,9 @@ from sceneql.bodies.rigid.tie_matrix_kernels import (
     TIE_HOLDS,
     TIES,
     TIES_AT,
-    add_tie,
-    begin_matrix,
-    end_matrix,
-    factor_filled,
-    solve_from,
 )
-from sceneql.bodies.rigid.tie_rows_kernels import (
+from sceneql.bodies.rigid.ties.tie_matrix_kernels import add_tie, begin_matrix, end_matrix, factor_filled, solve_from
+from sceneql.bodies.rigid.ties.tie_rows_kernels import (
     AT_A,
     AT_BIAS,
     AT_C,
@@ -111,26 +107,33 @@ def write_tie(floats, which, moved):
         to += ROW
 
 
+@lean_inlined
+def survey_tie(y, floats, ints, tie):
+    """`survey` of a tie, after those before it."""
+    worst, which = 0.0, ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
+    for side in range(2):
+        if which[MARKS] & (FRESH << side):
+            m = which[ONE + side]
+            see(y, floats, ints[MOVED_AT] + MOVED * m, ints, ints[MOVERS_AT] + MOVER * m)
+    write_tie(floats, which, ints[MOVED_AT])
+    to = which[ROWS_FROM]
+    for _ in range(which[ROWS_OF]):
+        gap, size = abs(floats[to + AT_C]), max(floats[to + AT_SIZE], 1e-300)
+        if gap > worst * size:
+            worst = gap / size
+        to += ROW
+    return worst
+
+
 @lean(F(F, A, A, I))
 def survey(t, y, floats, ints):
     """Write the movers, at no acceleration, and the rows for a state; the largest gap of a row, against the numbers
     that it is the difference of."""
     worst = 0.0
     for tie in range(ints[TIES]):
-        which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
         if tie + AHEAD < ints[TIES]:
             fetch_tie(floats, ints, tie + AHEAD)
-        for side in range(2):
-            if which[MARKS] & (FRESH << side):
-                m = which[ONE + side]
-                see(y, floats, ints[MOVED_AT] + MOVED * m, ints, ints[MOVERS_AT] + MOVER * m)
-        write_tie(floats, which, ints[MOVED_AT])
-        to = which[ROWS_FROM]
-        for _ in range(which[ROWS_OF]):
-            gap, size = abs(floats[to + AT_C]), max(floats[to + AT_SIZE], 1e-300)
-            if gap > worst * size:
-                worst = gap / size
-            to += ROW
+        worst = max(worst, survey_tie(y, floats, ints, tie))
     return worst
 
 
@@ -214,6 +217,12 @@ def push(floats, ints, right, further):
             move_by(mover)
 
 
+@lean_inlined
+def little_of(ints):
+    """What may be left of an equation, against the numbers that it is a sum of."""
+    return LEFT * max(1.0, ints[ROWS] / LONG)
+
+
 @lean(types.void(A, I, N, N, F, N, types.boolean))
 def refine(floats, ints, target, size_at, worst, most, begun):
     """The forces of `balance` by the factors that there are, in at most so many corrections.
@@ -222,7 +231,7 @@ def refine(floats, ints, target, size_at, worst, most, begun):
     """
     right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
     last, found = math.inf, False
-    little = LEFT * max(1.0, ints[ROWS] / LONG)
+    little = little_of(ints)
     for corrections in range(most):
         if corrections > 0:
             worst = remaining(floats, ints, target, size_at)
@@ -237,11 +246,17 @@ def refine(floats, ints, target, size_at, worst, most, begun):
             floats[ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH] + AT_FORCE] = 0.0
 
 
+@lean_inlined
+def well(ints, least):
+    """Whether factors with a least pivot solve at once."""
+    return least * max(1.0, ints[ROWS] / SHORT) ** 3 > WELL
+
+
 @lean(types.void(A, I, N, N, F))
 def correct(floats, ints, target, size_at, worst):
     """`balance` where the matrix, and on the right hand side what remains, ``worst`` at most, are written already."""
     least = factor_filled(floats, ints)
-    sure = size_at != AT_SIZE and least * max(1.0, ints[ROWS] / SHORT) ** 3 > WELL
+    sure = size_at != AT_SIZE and well(ints, least)
     most = 0 if least == 0.0 else 1 if sure else MOST_CORRECTIONS
     refine(floats, ints, target, size_at, worst, most, True)
 
@@ -254,7 +269,7 @@ def balance(floats, ints, target, size_at):
     sum of, if it is to be 0 but for their rounding.
     """
     right, part = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]], floats[ints[EASE_AT]]
-    worst, row, shared = 0.0, 0, begin_matrix(floats, ints)
+    worst, row, shared = 0.0, 0, begin_matrix(floats, ints, part)
     for tie in range(ints[TIES]):
         if tie + AHEAD < ints[TIES]:
             fetch_tie(floats, ints, tie + AHEAD)
@@ -272,6 +287,29 @@ def unlike(a, b, c, x, y, z):
     return apart > COARSE * size
 
 
+@lean_inlined
+def add_to(y, rate, floats, at, to, ints):
+    """`add` for the mover of ints[at:] and floats[to:]."""
+    if ints[at + POSITION] < 0:
+        return
+    body = floats[to : to + MOVED]
+    inverse, v = body[AT_MASS], ints[at + VELOCITY]
+    force = rate[v : v + 3]
+    for c in range(3):
+        force[c] += body[AT_PUSHED + c]
+    x, y_, z = body[AT_A], body[AT_A + 1], body[AT_A + 2]
+    if inverse > 0.0 and unlike(inverse * force[0], inverse * force[1], inverse * force[2], x, y_, z):
+        force[0], force[1], force[2] = x / inverse, y_ / inverse, z / inverse
+    if ints[at + ROTATION] >= 0:
+        k = ints[at + MOMENTUM]
+        torque = rate[k : k + 3]
+        for c in range(3):
+            torque[c] += body[AT_PUSHED + 3 + c]
+        x, y_, z = turning(y, floats, to, k)
+        if inverse > 0.0 and unlike(torque[0], torque[1], torque[2], x, y_, z):
+            torque[0], torque[1], torque[2] = x, y_, z
+
+
 @lean(types.void(A, A, A, I))
 def add(y, rate, floats, ints):
     """Adds the rows' forces and torques to the entries of velocities and angular momenta.
@@ -279,25 +317,7 @@ def add(y, rate, floats, ints):
     Those of the accelerations themselves where the forces of ties on a light body are so large that sums round them.
     """
     for m in range(ints[MOVERS]):
-        at, to = ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m
-        if ints[at + POSITION] < 0:
-            continue
-        body = floats[to : to + MOVED]
-        inverse, v = body[AT_MASS], ints[at + VELOCITY]
-        force = rate[v : v + 3]
-        for c in range(3):
-            force[c] += body[AT_PUSHED + c]
-        x, y_, z = body[AT_A], body[AT_A + 1], body[AT_A + 2]
-        if inverse > 0.0 and unlike(inverse * force[0], inverse * force[1], inverse * force[2], x, y_, z):
-            force[0], force[1], force[2] = x / inverse, y_ / inverse, z / inverse
-        if ints[at + ROTATION] >= 0:
-            k = ints[at + MOMENTUM]
-            torque = rate[k : k + 3]
-            for c in range(3):
-                torque[c] += body[AT_PUSHED + 3 + c]
-            x, y_, z = turning(y, floats, to, k)
-            if inverse > 0.0 and unlike(torque[0], torque[1], torque[2], x, y_, z):
-                torque[0], torque[1], torque[2] = x, y_, z
+        add_to(y, rate, floats, ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m, ints)
 
 
 @lean(TERM, inner=True)
@@ -305,7 +325,7 @@ def hold(t, y, rate, floats, ints):
     """Adds the forces [N] and torques [N m] of all ties."""
     # As `survey` and `balance`, but with each mover and each row looked at once while it is in the cache.
     right, part = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]], floats[ints[EASE_AT]]
-    worst, row, shared = 0.0, 0, begin_matrix(floats, ints)
+    worst, row, shared = 0.0, 0, begin_matrix(floats, ints, part)
     for tie in range(ints[TIES]):
         which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
         if tie + AHEAD < ints[TIES]:

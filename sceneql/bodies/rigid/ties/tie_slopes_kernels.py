@@ -13,14 +13,8 @@ exact in velocities and momenta, in which they are quadratic.
 
 import math
 
-from sceneql.bodies.rigid.tie_matrix_kernels import (
-    EASE_AT,
-    MOVED_AT,
-    MOVERS_AT,
-    ROWS,
-    ROWS_AT,
-)
-from sceneql.bodies.rigid.tie_rows_kernels import (
+from sceneql.bodies.rigid.ties.tie_layout import EASE_AT, MOVED_AT, MOVERS_AT, ROWS, ROWS_AT
+from sceneql.bodies.rigid.ties.tie_rows_kernels import (
     AT_A,
     AT_BIAS,
     AT_FORCE,

@@ -8,7 +8,39 @@ share.
 import numpy as np
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_MASS, MOVED, ROW
+from sceneql.bodies.rigid.ties.tie_layout import (
+    BEFORE,
+    CHAIN_AT,
+    DEPENDENT_AT,
+    DIAGONAL_AT,
+    EASE_AT,
+    ENDED_AT,
+    FACTORS,
+    FACTORS_AT,
+    HALF,
+    LANES,
+    LAST,
+    MARKS,
+    MOST_AT,
+    MOVED_AT,
+    OF_SHARED,
+    OF_TIE,
+    PLAN,
+    PLAN_AT,
+    RIGHT_AT,
+    ROWS,
+    SHARED_AT,
+    SHARED_MOVER,
+    SHARERS,
+    SIDES,
+    TIES,
+    TIES_AT,
+    VALUES,
+    VALUES_AT,
+    WORK,
+    WORK_AT,
+)
+from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_INVERSE, AT_MASS, MOVED, ROW
 from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.lanes_kernels import fma, load, store
@@ -16,40 +48,20 @@ from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.linear.multifrontal import layout
 from sceneql.system.signatures_kernels import A, F, I, N
 
-# Compiled at the first system of many rows, or of few.
+# Compiled at the first system of many rows, of few, or of chains.
 SPARSE = "sceneql.linear.multifrontal.factor_solve_kernels"
 factor_sparse = lazy(f"{SPARSE}:factor_up", F(I, A, A, A, A, A))
 solve_sparse = lazy(f"{SPARSE}:solve_after", types.void(I, A, A, A, types.boolean))
 factor_dense = lazy("sceneql.linear.dense_symmetric_kernels:factor", F(A, N, N, F))
 solve_dense = lazy("sceneql.linear.dense_symmetric_kernels:solve", types.void(A, N, N, A))
+CHAIN = "sceneql.bodies.rigid.ties.tie_chain_kernels"
+eliminate = lazy(f"{CHAIN}:eliminate", types.void(A, I, N, F))
+solve_chain = lazy(f"{CHAIN}:solve", types.void(A, I, types.boolean))
 
-MOVERS, ROWS, MOVERS_AT, ROWS_AT, SHARED_AT, PLAN_AT, PLAN = range(7)
-MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_AT, EASE_AT, TIE_AT, TIES = range(7, 19)
-TIES_AT, DIAGONAL_AT, ENDED_AT, HEAD = 19, 20, 21, 22
-"""Integers of an island's ties: numbers of movers and rows; where the integers of both, of the movers that ties share
-and of the plan begin, and how many the last are; offsets into the floats and sizes of what movers, matrix, factors,
-scratch and right hand side take, and what drifts keep (rattle_kernels); of EASE; of T of a tie; the number of ties and
-where their SIDES begin; the offset of the matrix's diagonal; where the last of what follows begins. Few rows have a
-matrix that is whole, its factors in place, and no plan; else it is in blocks of two ties (rows of one x rows of the
-other), as they are read. A mover that ties share: their number n and its own; where the one before begins (-1: none),
-and which half of T it has; of each tie OF_TIE: its first row, how many it has, their floats at its side, whether its
-own block is complete with this mover; then n x n, twice where the block of two ties begins (-1: it is not read), and 1
-where nothing is there yet. They stand in the order in which ties have had all of theirs."""
-SHARERS, SHARED_MOVER, BEFORE, HALF, OF_SHARED = range(5)
-OF_TIE = 4
-ROWS_OF, ROWS_FROM, ONE, OTHER, KINDS, NUMBERS_FROM, STRIDE, TIE_HOLDS, MARKS, SIDES = range(10)
-"""Integers of a tie: how many rows, offset of the first one's floats; its movers; the kinds of its rows, KIND_BITS
-each, the first one lowest; offset of the numbers of the first one, and of each further one that has some from there; of
-whether it holds; marks."""
-KIND_BITS = 3
-FRESH, LAST = 1, 4
-"""Marks of ONE, and times 2 of OTHER: no tie before has this mover; none behind has it, and it is solved."""
-LANES, T_OF = 8, 48
-"""Columns of T of a tie, of which those behind its rows are 0; its numbers."""
+T_OF = 48
+"""Numbers of T of a tie, in columns of LANES, of which those behind its rows are 0."""
 UPPER = np.triu(np.ones((LANES, LANES))).ravel()
 """Of a block's rows: 0 below the diagonal."""
-KEPT = 12
-"""Floats of a row that drifts keep of where they began: J."""
 EASE, LITTLE, DEPENDENT = 1e-9, 1e-13, 1e-12
 """Part of the diagonal that is added to it, at floats[ints[EASE_AT]]: none where no row follows from others at the
 start, so that light bodies may hold heavy ones, but LITTLE where a pivot is not above that part of its diagonal."""
@@ -153,8 +165,12 @@ def add_mover(floats, ints, at, part):
 
 
 @lean_inlined
-def begin_matrix(floats, ints):
-    """Zero J T where it is whole; where the first mover stands that ties share."""
+def begin_matrix(floats, ints, part):
+    """Zero J T where it is whole; where the first mover stands that ties share, of chains 0."""
+    if ints[CHAIN_AT] >= 0:
+        floats[ints[CHAIN_AT] + MOST_AT] = 1.0
+        floats[ints[CHAIN_AT] + DEPENDENT_AT] = DEPENDENT if part == 0.0 else 0.0
+        return 0
     if ints[FACTORS] == 0:
         values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
         for k in range(values.size):
@@ -164,7 +180,14 @@ def begin_matrix(floats, ints):
 
 @lean_inlined
 def add_tie(floats, ints, tie, at, part):
-    """Write of J T what the rows of a tie make known; ``at`` and what it returns: as `add_mover`."""
+    """Write of J T what the rows of a tie make known; ``at`` and what it returns: as `add_mover`.
+
+    Of chains the tie before is eliminated, of which lanes of numbers have reached the cache.
+    """
+    if ints[CHAIN_AT] >= 0:
+        if tie > 0:
+            eliminate(floats, ints, tie - 1, part)
+        return 0
     marks = ints[ints[TIES_AT] + SIDES * tie + MARKS]
     if marks & LAST:
         at = add_mover(floats, ints, at, part)
@@ -175,7 +198,10 @@ def add_tie(floats, ints, tie, at, part):
 
 @lean_inlined
 def end_matrix(floats, ints, part):
-    """Add the last of the movers to J T, and end the diagonal where it is whole."""
+    """Add the last of the movers to J T, and end the diagonal where it is whole; eliminate the last tie of chains."""
+    if ints[CHAIN_AT] >= 0:
+        eliminate(floats, ints, ints[TIES] - 1, part)
+        return
     if ints[ENDED_AT] >= 0:
         add_blocks(floats, ints, ints[ENDED_AT], part)
     if ints[FACTORS] == 0:
@@ -187,7 +213,7 @@ def end_matrix(floats, ints, part):
 @lean(types.void(A, I, F))
 def fill(floats, ints, part):
     """Write J T, at least the half of it that is read, with a part of its diagonal added."""
-    at = begin_matrix(floats, ints)
+    at = begin_matrix(floats, ints, part)
     for tie in range(ints[TIES]):
         at = add_tie(floats, ints, tie, at, part)
     end_matrix(floats, ints, part)
@@ -200,6 +226,9 @@ def factor_with(floats, ints, part):
     0 where the matrix cannot be factored, or, without what is added, where rows depend. If the matrix is not whole, the
     first half of `solve` is done, too.
     """
+    if ints[CHAIN_AT] >= 0:
+        least = 1.0 / floats[ints[CHAIN_AT] + MOST_AT]
+        return least if part == 0.0 else min(least, part)
     values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
     if ints[FACTORS] == 0:
         least = factor_dense(values, ints[ROWS], stride(ints), DEPENDENT if part == 0.0 else 0.0)
@@ -239,6 +268,9 @@ def factor(floats, ints):
 @lean(types.void(A, I, types.boolean))
 def solve_from(floats, ints, begun):
     """Solve with the factors, in place; ``begun``: for the right hand side that there was when they were made."""
+    if ints[CHAIN_AT] >= 0:
+        solve_chain(floats, ints, begun)
+        return
     right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
     if ints[FACTORS] == 0:
         solve_dense(floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]], ints[ROWS], stride(ints), right)

@@ -33,7 +33,7 @@ def follow(assembly: Assembly, ties: Sequence[Tied], floats: Floats, moved: Mapp
     import numpy as np
     from scipy.linalg import cho_factor, cho_solve
 
-    from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_J, AT_MASS, AT_SPEED, ROW
+    from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_INVERSE, AT_J, AT_MASS, AT_SPEED, ROW
 
     rows = [tie.scratch_at + ROW * k for tie in ties for k in range(len(tie.rows))]
     speeds = floats[np.array(rows) + AT_SPEED]

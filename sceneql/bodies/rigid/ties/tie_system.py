@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from itertools import chain
@@ -14,7 +15,12 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.system import Assembly, Mover, Slopes, Tied
 
-KERNELS = "sceneql.bodies.rigid.tie_kernels"
+HOLD = "sceneql.bodies.rigid.ties.tie_kernels:hold", "sceneql.bodies.rigid.ties.tie_chain_hold_kernels:hold"
+SETTLE = (
+    "sceneql.bodies.rigid.ties.tie_settle_kernels:settle",
+    "sceneql.bodies.rigid.ties.tie_chain_settle_kernels:settle",
+)
+"""Of any ties, of chains."""
 KINDS = ("point", "angle", "distance", "gear", "ball", "written", "carried")
 
 IMPLIED, ROUNDING = 1e-10, 1e-13
@@ -36,11 +42,12 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     import numpy as np
 
     from sceneql.bodies.gears.wheels import geared
-    from sceneql.bodies.rigid import tie_matrix_kernels as kernels
-    from sceneql.bodies.rigid.tie_kernels import survey
-    from sceneql.bodies.rigid.tie_matrix import RowsOfTie, tie_matrix
-    from sceneql.bodies.rigid.tie_rows_kernels import MOVED, MOVER, ROW, ROW_INTS
-    from sceneql.bodies.rigid.tie_start import follow
+    from sceneql.bodies.rigid.ties import tie_layout as layout
+    from sceneql.bodies.rigid.ties import tie_matrix_kernels as kernels
+    from sceneql.bodies.rigid.ties.tie_kernels import survey
+    from sceneql.bodies.rigid.ties.tie_matrix import RowsOfTie, tie_matrix
+    from sceneql.bodies.rigid.ties.tie_rows_kernels import MOVED, MOVER, ROW, ROW_INTS
+    from sceneql.bodies.rigid.ties.tie_start import follow
 
     ties = geared(ties, assembly)
     movers: dict[tuple[int, ...], int] = {}
@@ -53,35 +60,40 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         stride = max(LEAST, *map(len, constants))
         numbers_at = assembly.floats([x for some in constants if some for x in (*some, *[0.0] * (stride - len(some)))])
         kinds = [KINDS.index(row.kind) for row in tie.rows]
-        packed = sum(kind << kernels.KIND_BITS * k for k, kind in enumerate(kinds))
+        packed = sum(kind << layout.KIND_BITS * k for k, kind in enumerate(kinds))
         heads.append([len(kinds), tie.scratch_at, *of, packed, numbers_at, stride, tie.holds_at])
         sides.append(RowsOfTie((of[0], of[1]), len(rows), len(rows) + len(kinds), tie.scratch_at, known))
         for k, (kind, some) in enumerate(zip(kinds, constants, strict=True)):
             rows.append((kind, *of, numbers_at, tie.scratch_at + ROW * k, tie.holds_at))
             numbers_at += stride if some else 0
     matrix = tie_matrix(sides, [which[0] >= 0 for which in movers])
-    for head, marks in zip(heads, matrix.marks, strict=True):
-        head.append(marks)
+    factors_from = assembly.floats(np.zeros(matrix.factors))
+    for k, (head, marks) in enumerate(zip(heads, matrix.marks, strict=True)):
+        head += [marks, sides[k].first, *(-1, -1, -1, -1)]
+        if matrix.chain:
+            head[layout.FACTORS_FROM :] = [factors_from, *matrix.chain[k]]
+            factors_from += layout.of_chain(sides[k].count)
     most = kernels.T_OF * max((some[0] for some in matrix.shared), default=0)
     ease, of_tie = assembly.floats([kernels.EASE]), assembly.floats(np.zeros(2 * most))
-    shared_at, ended_at = kernels.HEAD + MOVER * len(movers) + ROW_INTS * len(rows), -1
+    shared_at, ended_at = layout.HEAD + MOVER * len(movers) + ROW_INTS * len(rows), -1
     for sharers in matrix.shared:
-        ended_at, sharers[kernels.BEFORE] = shared_at, ended_at
-        sharers[kernels.HALF] = of_tie + most * sharers[kernels.HALF]
+        ended_at, sharers[layout.BEFORE] = shared_at, ended_at
+        sharers[layout.HALF] = of_tie + most * sharers[layout.HALF]
         shared_at += len(sharers)
     lists: list[Sequence[int]] = [
         *([number for some in parts for number in some] for parts in (movers, rows, matrix.shared)),
         [] if matrix.plan is None else matrix.plan.numbers.tolist(),
         [*chain(*heads)],
     ]
-    begins = np.cumsum([kernels.HEAD, *(len(some) for some in lists)]).tolist()
+    begins = np.cumsum([layout.HEAD, *(len(some) for some in lists)]).tolist()
     spent = (0, 0) if matrix.plan is None else (matrix.plan.factors, 2 * (matrix.plan.work + len(rows)))
     sizes = (MOVED * len(movers), matrix.size, *spent, len(rows))
     moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
+    assembly.floats(np.zeros(layout.LANES))  # which lanes of the right hand side reach
     for at in matrix.alone:
         assembly.write(values + at, [1.0])
     free = not any(isinstance(mover, Led) for tie in ties for mover in tie.movers)
-    kept = assembly.floats(np.zeros(kernels.KEPT * len(rows) if free else 0))
+    kept = assembly.floats(np.zeros(layout.KEPT * len(rows) if free else 0))
     head = [len(movers), len(rows), *begins[:4], len(lists[3])]
     head += [
         moved,
@@ -99,6 +111,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         begins[4],
     ]
     head += [assembly.floats(np.ones(len(rows))), ended_at]
+    head += [assembly.floats([math.inf, *(layout.CHAIN - 1) * [0.0]]) if matrix.chain else -1]
     ints = tuple(int(number) for number in np.concatenate([head, *lists]))
     _add_pivots(assembly, ties)
     numbers = assembly.numbers()
@@ -111,13 +124,14 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     spare = assembly.floats(np.zeros(MOVED))
 
     def slopes() -> Slopes:
-        from sceneql.bodies.rigid.tie_slopes import tie_slopes
+        from sceneql.bodies.rigid.ties.tie_slopes import tie_slopes
 
         return tie_slopes(ints, spare, len(assembly.start()))
 
-    assembly.term("tie", f"{KERNELS}:hold", ints, slopes)
+    chained = bool(matrix.chain)
+    assembly.term("tie", HOLD[chained], ints, slopes)
     assembly.tie_ints = ints
-    assembly.after_step("sceneql.bodies.rigid.tie_settle_kernels:settle", ints, samples=True)
+    assembly.after_step(SETTLE[chained], ints, samples=True)
     if free:  # a prescribed motion is known at the end of a step only
         assembly.tied_drift("sceneql.bodies.rigid.rattle_kernels:end_tied", ints)
 
@@ -126,7 +140,7 @@ def _must_agree(ties: Sequence[Tied], floats: Floats) -> None:
     """Raise ScriptError where no velocities satisfy all ties at the start, where ``floats`` hold their evaluation."""
     import numpy as np
 
-    from sceneql.bodies.rigid.tie_rows_kernels import AT_J, AT_SPEED, ROW
+    from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_J, AT_SPEED, ROW
 
     of = [(tie, k) for tie in ties for k in range(len(tie.rows))]
     if len(of) > MOST or not any(isinstance(mover, Led) for tie in ties for mover in tie.movers):
@@ -189,7 +203,7 @@ def redundant(ties: Sequence[Tied], floats: Floats) -> tuple[int, int]:
     from scipy.sparse import csc_array, csr_array
     from scipy.sparse.linalg import splu
 
-    from sceneql.bodies.rigid.tie_rows_kernels import AT_J, ROW
+    from sceneql.bodies.rigid.ties.tie_rows_kernels import AT_J, ROW
 
     movers: dict[tuple[int, ...], int] = {}
     parts: list[tuple[int, int, int]] = []

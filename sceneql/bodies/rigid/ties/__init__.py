@@ -1,0 +1,1 @@
+"""Ties: rows, the matrix of all, its factors, and chains of them."""
