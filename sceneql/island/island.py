@@ -176,6 +176,11 @@ class IslandAssembly(Offered):
         return Fields(tuple(self._grids), next(iter(self._flows.values()), None), alone, elements)
 
     @property
+    def stiff(self) -> tuple[tuple[str, Ints], ...]:
+        """(kernel, integers) of terms that additive methods may march implicitly (System.stiff)."""
+        return tuple((block.kernels[0], block.ints) for stage in STAGES for block in self._terms[stage] if block.stiff)
+
+    @property
     def changed_between_steps(self) -> bool:
         """Whether contacts, or kernels that act after steps, change the state."""
         return bool(self._exact or self._local or self._after)

@@ -12,6 +12,7 @@ from sceneql.kinds import Gives, Model, Problem, Quantity, Record, Ref, field, q
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
+from sceneql.skins.elasticity import ACROSS, ALONG, BENT
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -22,10 +23,6 @@ if TYPE_CHECKING:
     from sceneql.skins.deep import Sheet
     from sceneql.skins.flat import Line
     from sceneql.system import Assembly, ModelState
-
-
-ACROSS, ALONG, BENT = 0.55, 0.2, 4.3
-"""Factors of tension, of stretch, and of bending over the cell's square in Membrane.largest_tension."""
 
 
 class Springs(Record):
