@@ -173,12 +173,8 @@ class IslandAssembly(Offered):
         alone = bool(self._ranges) and len(self._ranges) == len(self._grids) + len(self._flows)
         alone = alone and not self._pairs and not self.changed_between_steps
         elements = 0 if self.changed_between_steps else self.on_elements
-        return Fields(tuple(self._grids), next(iter(self._flows.values()), None), alone, elements)
-
-    @property
-    def stiff(self) -> tuple[tuple[str, Ints], ...]:
-        """(kernel, integers) of terms that additive methods may march implicitly (System.stiff)."""
-        return tuple((block.kernels[0], block.ints) for stage in STAGES for block in self._terms[stage] if block.stiff)
+        stiff = tuple((one.kernels[0], one.ints) for stage in STAGES for one in self._terms[stage] if one.stiff)
+        return Fields(tuple(self._grids), next(iter(self._flows.values()), None), alone, elements, stiff)
 
     @property
     def changed_between_steps(self) -> bool:

@@ -132,7 +132,6 @@ class Assembled:
             impacts=made.changed_between_steps,
             fields=made.on_grids,
             floats=made.numbers,
-            stiff=made.stiff,
             orbits=bool(forces) and made.moved_by_forces_alone and all(force.at_a_distance() for force in forces),
             free=made.moves_freely and turning and all(force.uniform() for force in forces),
             apart="barrier" in made.contact_mode,

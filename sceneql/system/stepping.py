@@ -144,8 +144,6 @@ class IslandFacts:
     fields: Fields = field(default_factory=Fields)
     floats: Callable[[], Floats] | None = None
     """Returns the island's floats, into which the offsets of ``fields`` point."""
-    stiff: tuple[tuple[str, Any], ...] = ()
-    """(kernel, integers) of terms that additive methods may march implicitly (System.stiff)."""
     orbits: bool = False
     """Whether it consists of masses on which only forces at a distance act (Force.at_a_distance)."""
     free: bool = False

@@ -254,11 +254,16 @@ class Membrane(Model):
             return np.array(skin.position_at + 3 * skin.count)
         return rows if output == "positions" else None
 
-    def largest_tension(self, cell: float) -> float:
+    def implicit_tension(self) -> float:
+        """As largest_tension, of the springs of a flat skin, whose tensions a solver may solve for [N/m]."""
+        return 0.0 if self.law.springs is None else ALONG * self.law.springs.stretch
+
+    def largest_tension(self, cell: float, along: bool = True) -> float:
         """Times k^3/density, k one over the side of a flow's ``cell``, how fast its waves turn, squared [N/m].
 
         That of waves across it follows from its tension and its bending, of those along it from its stretch, all as the
-        splines leave them (the eigenvalues of ellipses and bars in flows, tests/test_membranes.py).
+        splines leave them (the eigenvalues of ellipses and bars in flows, tests/test_membranes.py). ``along``: whether
+        the latter count.
         """
         stretch = 0.0 if self.law.springs is None else self.law.springs.stretch
         if self.law.neo_hookean is not None:
@@ -266,7 +271,7 @@ class Membrane(Model):
         if self.law.skalak is not None:  # along a side that does not stretch across
             stretch = 2.0 * self.law.skalak.modulus * (1.0 + self.law.skalak.area)
         across = ACROSS * (self.law.tension or self.prestress) + BENT * self.bend / cell**2
-        return max(across, ALONG * stretch)
+        return max(across, ALONG * stretch * along)
 
     def remark(self, state: ModelState) -> str:
         """Its vertices."""

@@ -49,11 +49,11 @@ class Ark3(Solver):
     def choose(self, island: IslandFacts) -> Methods:
         """With skins implicit where its step is beyond what they bear, or a tolerance's steps may be."""
         flow = island.fields.flow
-        if self.skins != "auto" or not island.stiff or flow is None or island.floats is None:
+        if self.skins != "auto" or not island.fields.stiff or flow is None or island.floats is None:
             return super().choose(island)
         from sceneql.skins.stiff import stiff_step
 
-        found = stiff_step.lines_of(island.stiff, flow)
+        found = stiff_step.lines_of(island.fields.stiff, flow)
         if found is None:
             return super().choose(island)
         floats, made = island.floats(), self.stepper()
@@ -62,6 +62,10 @@ class Ark3(Solver):
             return Methods(self.model_copy(update={"skins": "explicit"}), made, remark=remark)
         implicit = stiff_step.chosen(made) if self.step is None else stiff_step.implicit(made)
         return Methods(self.model_copy(update={"skins": "implicit"}), implicit, remark=remark)
+
+    def solves_tensions(self) -> bool:
+        """Unless they are to be explicit."""
+        return self.skins != "explicit"
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """Largest of the modes', whose decay is implicit and whose turning explicit, or with implicit skins is, too."""
