@@ -15,7 +15,7 @@ import click
 
 from sceneql import __version__, interrupts, room
 from sceneql.exits import GALLERY_DIFFERS, OK, failed, stopped
-from sceneql.options import ABOVE_ZERO, SCENE, as_length, as_path, as_seconds, as_words, meant, options
+from sceneql.options import ABOVE_ZERO, SCENE, as_length, as_path, as_seconds, as_target, as_words, meant, options
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -86,7 +86,10 @@ def _without_overflows() -> None:
 @cli.command()
 @SCENE
 @options
-@click.option("-o", "--output", callback=as_path, help="File to make, for a script with one output.")
+@click.option(
+    "-o", "--output", "target", callback=as_target, metavar="PATH",
+    help="File to make, for a script with one output; or a folder for all of them, `films/`.",
+)  # fmt: skip
 @click.option("--report", "account", is_flag=True, help="Tell how far energy and momentum drifted.")
 @click.option("--draft", is_flag=True, help="Pictures of `trace` less sharp, in a sixth of the time.")
 @click.option("--limit", callback=as_seconds, metavar="TIME", help="Fail after so long, as 20s; what is made is kept.")
@@ -99,7 +102,7 @@ def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path 
         graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
     _warn(graph)
     with bar(graph.name) as progress:
-        report = pipeline.render(graph, progress=progress, **how)
+        report = pipeline.render(graph, progress=progress, **how.pop("target"), **how)
     _warn(report)
     for path in report.files:
         click.echo(f"made {path}")

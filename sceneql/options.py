@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -51,6 +52,17 @@ def as_path(context: click.Context, parameter: click.Parameter, value: Any) -> A
     if isinstance(value, tuple):
         return tuple(Path(item) for item in value)
     return None if value is None else Path(value)
+
+
+def as_target(context: click.Context, parameter: click.Parameter, value: str | None) -> Any:
+    """A file, or with a slash behind it the folder in which files get names of their own, as `render` takes them."""
+    from pathlib import Path
+
+    if value is None:
+        return {}
+    path = Path(value)
+    folder = value.endswith(("/", os.sep)) or (not path.suffix and path.is_dir())
+    return {"folder" if folder else "output": path}
 
 
 def as_words(context: click.Context, parameter: click.Parameter, value: Any) -> tuple[str, ...]:

@@ -284,10 +284,7 @@ class Tools:
 
     def _renderer(self, output: Picture) -> Renderer:
         task = None if output.renderer is None else self.graph.tasks[output.renderer.name]
-        cls = Catalogue().load("renderers", "trace")
-        if cls is None:
-            raise LookupError("the default renderer is missing")
-        renderer = cast(Renderer, cls() if task is None else task.kind)
+        renderer = _default_renderer() if task is None else cast("Renderer", task.kind)
         if not self.draft:
             return renderer
         draft = renderer.draft()
@@ -295,6 +292,14 @@ class Tools:
             told = f"'{self.name}' is drawn by '{task.word if task else 'trace'}', of which there is no draft"
             raise Unsuitable(f"{told}: leave out --draft, or --set outputs.{self.name}.renderer=trace")
         return draft
+
+
+@cache
+def _default_renderer() -> Renderer:
+    cls = Catalogue().load("renderers", "trace")
+    if cls is None:
+        raise LookupError("the default renderer is missing")
+    return cast("Renderer", cls())
 
 
 @cache

@@ -1,9 +1,11 @@
-"""Wheels that mesh: planets on an arm, against the accelerations of the two angles that are free."""
+"""Wheels that mesh: planets on an arm, against the accelerations of the two angles that are free; in a housing."""
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import runs
+from sceneql.shapes.placement import rotation_matrix
 
 SCRIPT = """
 clock: {{end: 2 s}}
@@ -43,3 +45,55 @@ def test_a_planet_turns_against_the_line_from_axle_to_axle(tmp_path, solver, goo
     np.testing.assert_allclose(angles, [sun, arm, ring, planet - arm], atol=good)
     # The force of the teeth on the sun, at its radius of 0.2 m.
     assert np.linalg.norm(force) == pytest.approx(abs(0.02 * pushed[0] - 1) / 0.2, rel=1e-6)
+
+
+FREE = """
+clock: {{end: 1 s}}
+models:
+  m:
+    rigid:
+      bodies:
+        house: {{mass: 2 kg, inertia: 0.05 0.08 0.1 kg*m^2, velocity: 0.3 0 0 m/s, spin: 3 2 1 rad/s}}
+        one: {{mass: 1 kg, inertia: 0.01 0.01 0.018 kg*m^2, position: 0.2 0 0 m, spin: 3 2 9 rad/s}}
+        two: {{mass: 1 kg, inertia: {inertia} kg*m^2, position: -0.2 0.1 0.05 m}}
+forces: []
+ties:
+  first: {{hinge: {{between: [m.one, m.house], at: 0.2 0 0.04 m, motor: {{torque: 0.02 N*m}}}}}}
+  second: {{hinge: {{between: [m.two, m.house], at: -0.2 0.1 0.05 m, axis: {axis}}}}}
+  mesh: {{gear: {{between: [m.one, m.two], teeth: 12 30, other_axis: {axis}}}}}
+solvers: {{main: {{{solver}}}}}
+"""
+
+
+@pytest.mark.parametrize("axis", ["0 0 1", "1 0 0"])
+@pytest.mark.parametrize(
+    ("solver", "good"), [("dop853: {tolerance: 1e-11}", 1e-8), ("verlet: {step: 1 ms}", 1e-4), ("radau", 1e-5)]
+)
+def test_wheels_in_a_housing_that_tumbles_turn_against_it(tmp_path, axis, solver, good):
+    """Round wheels leave the inertia of the whole: a gyrostat, whose wheels turn by 30 and by -12 of one angle."""
+    axes = np.array([[0, 0, 1.0], [float(part) for part in axis.split()]])
+    own = np.array([[0.01, 0.01, 0.018], 0.02 + 0.01 * axes[1]])
+    script = FREE.format(axis=axis, solver=solver, inertia=" ".join(map(str, own[1])))
+    outputs = ["m.house.spin", "m.one.spin", "first.angle", "second.angle", "m.house.rotation"]
+    begin, end = runs.watch(tmp_path, script, [0, 1], *outputs, pruned=False)
+    places, masses = np.array([[0, 0, 0], [0.2, 0, 0], [-0.2, 0.1, 0.05]]), np.array([2, 1, 1])
+    whole = np.diag(np.array([0.05, 0.08, 0.1]) + own.sum(axis=0))
+    for mass, arm in zip(masses, places - masses @ places / 4, strict=True):
+        whole += mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    by, about = np.array([30, -12]), np.array([0.018, 0.03])
+    along = (about * by) @ axes
+    both = np.block([[whole, along[:, None]], [along, about @ by**2]])
+
+    def rate(_, y):
+        # Momenta J w + g s, in the world, and g w + a s; the axes of the housing, in which both are; the angle.
+        turn = y[3:12].reshape(3, 3)
+        *spin, speed = np.linalg.solve(both, [*(turn.T @ y[:3]), y[13]])
+        return [0, 0, 0, *np.cross(turn, spin).ravel(), speed, 30 * 0.02]
+
+    first = both @ [*begin[0], (begin[1] - begin[0])[2] / 30]
+    start = [*first[:3], *np.eye(3).ravel(), 0, first[3]]
+    y = solve_ivp(rate, (0, 1), start, method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    turn = y[3:12].reshape(3, 3)
+    np.testing.assert_allclose(end[2:4], by * y[12], atol=good)
+    np.testing.assert_allclose(rotation_matrix(end[4]), turn, atol=good)
+    np.testing.assert_allclose(end[0], turn @ np.linalg.solve(both, [*(turn.T @ y[:3]), y[13]])[:3], atol=10 * good)

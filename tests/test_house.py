@@ -13,6 +13,10 @@ LAZY = {
         "bodies.rigid.tied_rows_kernels": "for bodies that are tied",
         "bodies.rigid.tied_step_kernels": "for bodies that are tied",
     },
+    "bodies.rigid.tie_rows_kernels": {
+        "bodies.gears.carried_gear_kernels": "for gears in what turns itself",
+        "bodies.gears.gear_kernels": "for gears on what stays",
+    },
     "compiled.threads_kernels": {"compiled.start_threads_kernels": "where a first term is large enough for threads"},
     "contacts.back_off_kernels": {"contacts.back_off_in_stages_kernels": "for methods whose stages Newton solves"},
     "contacts.body_path_kernels": {"contacts.search_kernels": "when the first body comes near"},

@@ -43,6 +43,31 @@ def test_blocks_asked_for_later_hold_what_they_hold_at_once():
         assert np.array_equal(getattr(later, field.name), getattr(once, field.name)), field.name
 
 
+def test_blocks_without_surface_are_proved_by_slopes_where_ranges_are_too_wide():
+    """Each coordinate is there twice: by its range, f may be zero in 166 blocks."""
+    low, high = (-1.5,) * 3, (1.5,) * 3
+    shop = GridExtraction(
+        bounded(tape_of("x^2 - x + y^2 - y + z^2 - z + 0.5"), low, high), grid_around(low, high, 3 / 64)
+    )
+    blocks, sides = shop.met(), 8 * shop.grid.blocks + 1
+    assert len(blocks) == 100
+    places = [first + np.arange(side) * shop.grid.cell for first, side in zip(shop.grid.low, sides, strict=True)]
+    nodes = np.stack(np.meshgrid(*places, indexing="ij"), axis=-1).reshape(-1, 3)
+    inside, told = field_values(shop.whole, nodes).reshape(sides) < 0.0, set(map(tuple, blocks.tolist()))
+    for i, j, k in np.ndindex(*shop.grid.blocks):
+        some = inside[8 * i : 8 * i + 9, 8 * j : 8 * j + 9, 8 * k : 8 * k + 9]
+        assert some.all() or not some.any() or (i, j, k) in told
+
+
+def test_a_smooth_solid_that_turns_too_much_all_over_gets_cells_of_half_the_side():
+    """It took twice the time, and was twice as far from the surface, with a third of its cells cut by four."""
+    halved, asked = cut_finer(TANGLECUBE, 3.0, 32)[0], cut_finer(TANGLECUBE, 3.0, 64)[0]
+    assert np.array_equal(halved.vertices, asked.vertices)
+    assert np.array_equal(halved.triangles, asked.triangles)
+    creased = cut_finer(STEINER, 0.6, 32)[0]  # along creases alone
+    assert len(creased.triangles) < len(cut(STEINER, 0.6, 64).triangles) * 1.5
+
+
 def test_resolved_shapes_hide_next_to_nothing():
     found = unresolved(tape_of(TORUS), (-1.5,) * 3, (1.5,) * 3, 0.05)
     assert found.volume < 1e-6

@@ -236,3 +236,10 @@ def test_a_name_that_ends_in_another_format_is_refused(tmp_path):
     said = sceneql(tmp_path, "render", "f.yaml", "-o", "film.txt", code=2)
     assert said.strip() == "error: 'film' is written as .mp4, which film.txt does not end in"
     assert [path.name for path in tmp_path.iterdir()] == ["f.yaml"]
+
+
+def test_a_folder_that_is_named_gets_the_files(tmp_path):
+    """It wrote `films.png` beside the folder."""
+    (tmp_path / "still.yaml").write_text(STILL)
+    assert f"made {Path('films') / 'still.png'}" in sceneql(tmp_path, "render", "still.yaml", "-o", "films/")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["films", "still.yaml"]

@@ -381,3 +381,23 @@ solvers: {main: SOLVER}
     expected = [pushed.sol(0.82), braked.sol(0.84), braked.sol(0.9)]
     np.testing.assert_allclose([row[:2] for row in rows], expected, atol=5e-5)
     np.testing.assert_allclose([row[2] for row in rows], [1.05, -1.05, -1.05], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("motor", "solver", "said"),
+    [
+        ("speed: 2 rad/s", "dop853", "exact, chosen for up to 8 bodies"),
+        ("speed: 2 rad/s", "rk4", "local, `exact` locates events in steps that a tolerance chooses"),
+        (
+            "speed: '(1 rad/s)*floor(time/(0.5 s))'",
+            "dop853",
+            "local, it cannot be told how what the motor of 'h' follows changes: its",
+        ),
+    ],
+)
+def test_explain_says_why_a_motor_acts_as_it_does(tmp_path, motor, solver, said):
+    written = tmp_path / "scene.yaml"
+    drive = f"motor: {{torque: 5 N*m, {motor}}}"
+    script = scene(drive=drive, forces="gravity", solver=solver)
+    written.write_text("".join(line for line in script.splitlines(True) if not line.startswith("contacts:")))
+    assert f"stops, motors and friction of h: {said}" in text(explain(load(written, pruned=False)))

@@ -177,3 +177,10 @@ def test_auto_takes_a_tolerance_that_is_written_at_its_word_beside_a_barrier():
     assert (steps.first.control.adaptive, steps.first.control.first_step) == (False, 1 / 480)
     chosen = Auto(tolerance=1e-5).choose(apart).first.control
     assert (chosen.adaptive, chosen.tolerance) == (True, 1e-5)
+
+
+@pytest.mark.parametrize("facts", [{}, {"apart": True}])
+def test_auto_says_why_large_elastic_solids_are_not_marched_by_bdf2(facts):
+    large, small = (Auto().choose(IslandFacts(2 * n, in_solids=n, **facts)) for n in (12_000, 1_000))
+    assert "bdf2, of one stage a step, would take" in large.remark
+    assert "of one stage" not in small.remark

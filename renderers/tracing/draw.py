@@ -19,13 +19,12 @@ from renderers.tracing.filter.spread_kernels import ROOM, spread_sky
 from renderers.tracing.light.sampling_kernels import subpixels
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT
 from renderers.tracing.pack import pack
-from renderers.tracing.picture import BAND, BROAD, Picture, over_rows
+from renderers.tracing.picture import BROAD, Picture, over_rows
 from renderers.tracing.solids.packet_choice import lender, packets_for
 from renderers.tracing.sprites import over
 from renderers.tracing.tiles_kernels import choose, reach
 from renderers.tracing.waves import Waves
 from renderers.tracing.waves_kernels import layers_of
-from sceneql.compiled.kernels import thread_count
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -83,7 +82,7 @@ def draw(
         busy, records, visibility, fine = of_layer
         with_waves(lambda w: w.refine(start, stop, busy, records, visibility, buffers.means, fine))
 
-    over_rows(height, gather, "tracing rays", band=BROAD if thread_count() == 1 else BAND)
+    over_rows(height, gather, "tracing rays", most=BROAD)
     undecided, seconds, unsearched = map(sum, zip(*counts, strict=True))
     layers_seen = (1, 0) if seconds else (0,)  # layer 0 comes last: the stage of edges reads its planes
     if hard:
@@ -138,7 +137,7 @@ def _soften(with_waves: Callable[..., None], buffers: Buffers, layers: Sequence[
             with_waves(lambda w, own=own: w.soften(*own))
 
     for stage in (look, sample):
-        over_rows(height, stage, band=BROAD)
+        over_rows(height, stage, most=BROAD)
 
 
 def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int) -> None:

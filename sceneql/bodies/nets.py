@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats, Ints
+    from sceneql.system import Skin
 
 SIDES = ("left", "right", "bottom", "top", "back", "front")
 EDGES = ("left", "right", "bottom", "top")
@@ -81,6 +82,24 @@ def alike(net: Net) -> Floats:
     if net.dampers is not None:
         blocks[:, 3], blocks[:, 4] = net.dampers, 0.0
     return blocks
+
+
+def faces_of(net: Net, stiffnesses: Floats, radius: float) -> Skin:
+    """The faces of a cloth or a solid, that a barrier keeps apart.
+
+    ``stiffnesses`` (m,) [N/m] of the springs, ``radius`` [m] of the masses. A stiffness k along the faces' sides stands
+    for the modulus k over the thickness of a sheet, twice the radius, and over the distance of masses in a solid. None
+    is marked as held: pins, which have no inverse mass, let go.
+    """
+    import numpy as np
+
+    from sceneql.system import Skin
+
+    triangles, n = np.asarray(net.triangles, dtype=np.int64), len(net.points)
+    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1) @ [n, 1]
+    along = np.isin(np.sort(net.pairs, axis=1) @ [n, 1], sides)
+    thick = net.apart if net.tetrahedra is not None or radius == 0.0 else 2.0 * radius
+    return Skin(triangles, np.zeros((n, 3), dtype=bool), float(np.median(stiffnesses[along])) / thick)
 
 
 def turned(points: Floats, center: Sequence[float], quaternion: Sequence[float]) -> Floats:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import PrivateAttr
@@ -12,6 +13,7 @@ from pydantic import PrivateAttr
 from sceneql import kinds
 from sceneql.bodies import bodies as point_masses
 from sceneql.bodies.filling.fill import chance_key, draws
+from sceneql.bodies.nets import Net, faces_of
 from sceneql.bodies.pins import Pin, guide, pinned, start_velocity
 from sceneql.kinds import Gives, Model, Moment, Problem, Quantity, Record, field, quantity_type
 from sceneql.quantities import dimension as dim
@@ -22,7 +24,6 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
-    from sceneql.bodies.nets import Net
     from sceneql.frame import Floats, Shape
     from sceneql.system import Assembly, Bodies, ModelState, Slopes
 
@@ -242,7 +243,9 @@ class SpringModel(Model):
         stiffnesses = blocks[:, 1] + blocks[:, 2] * assembly.numbers()[stiffness_at]
         period = _shortest_period(net.pairs, stiffnesses, weights)
         dampings = blocks[:, 3] + blocks[:, 4] * assembly.numbers()[damping_at]
-        return replace(bodies, springs=Springs(net.pairs, np.stack([stiffnesses, dampings]), period))
+        lasting = net.triangles is not None and self.tear is None
+        faces = partial(faces_of, net, stiffnesses, self.mass_radius()) if lasting else None
+        return replace(bodies, springs=Springs(net.pairs, np.stack([stiffnesses, dampings]), period, faces))
 
     def holding(self, state: ModelState) -> Any:
         """Mask (m,) of the springs that have not torn."""

@@ -328,8 +328,13 @@ def thread_count() -> int:
     return variables.threads() or max(1, len(os.sched_getaffinity(0)))
 
 
+HANDED = 1e-4
+"""Seconds after which a thread in Python gives way to one that waits; by default 5e-3, a third of a small frame."""
+
+
 @cache
 def _pool(threads: int) -> ThreadPoolExecutor:
+    sys.setswitchinterval(min(HANDED, sys.getswitchinterval()))
     return ThreadPoolExecutor(threads, thread_name_prefix="sceneql")
 
 

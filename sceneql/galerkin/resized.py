@@ -28,6 +28,14 @@ class Resized:
         """The spacing [m], or the mean side of a block's cells."""
         return (_spacing(self) or 0.0) if self.block is None else float(self.block.mean_side())
 
+    def sides(self: Any, state: ModelState) -> tuple[float, ...]:
+        """How large its elements are [m]: along each side of a block, else the cube root of their mean volume."""
+        if self.block is not None:
+            low, high = self.block.box()
+            return tuple((b - a) / count for a, b, count in zip(low, high, self.block.cells, strict=True))
+        sizes = self.samples(state)[2]
+        return (float(sizes.sum() / len(self.solid.mesh.cells)) ** (1 / 3),)
+
     def resized(self: Any, part: float) -> Any:
         """Itself with elements of a part of their size."""
         finer = {name: one.model_copy(update={"spacing": part * one.spacing}) for name, one in self.finer.items()}

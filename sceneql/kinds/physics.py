@@ -43,7 +43,6 @@ class Model(Kind):
     """Whether forces that name no model act on it."""
     has_skin: ClassVar[bool] = False
     """Whether its masses are vertices of a surface: all models of a contact with it are then solved together."""
-
     carried: ClassVar[bool] = False
     """Whether it is a skin without inertia that a flow carries (system.Membrane)."""
     immersible: ClassVar[bool] = False
@@ -56,10 +55,7 @@ class Model(Kind):
     def assemble_part(
         self, name: str, assembly: Assembly, bodies: Bodies, start: ModelState, first: int, last: int
     ) -> Bodies | None:
-        """Reserve only its bodies first..last-1, at their initial state, as a block that interacts with no other body.
-
-        None: the model cannot be divided.
-        """
+        """Reserve only its bodies first..last-1, initially, as a block without interactions; None: indivisible."""
         return None
 
     def read(self, output: str, state: ModelState) -> Any:
@@ -69,9 +65,8 @@ class Model(Kind):
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
         """Indices into `state.y` at which an output stands, in the output's shape; None: the output is computed.
 
-        ``state``: at the start of the run, for its bodies, ints and floats; the indices stay the same. Values that are
-        evaluated at stage times, as the place of an attractor, can read such outputs of models of their island and no
-        others: other links are refused. Everything that is read between steps is read by `read`.
+        ``state``: at the start of the run, for its bodies, ints and floats; the indices stay. Values at stage times, as
+        the place of an attractor, can read such outputs of models of their island alone; `read` is between steps.
         """
         return None
 
@@ -116,6 +111,10 @@ class Model(Kind):
     def fluid(self) -> tuple[float, float] | None:
         """Density [kg/m^3] and viscosity [Pa s] of the fluid inside it; None where it is the flow's own fluid."""
         return None
+
+    def faceless(self) -> str:
+        """Why contacts beside elastic solids do not take its masses; empty where they do: vertices of lasting faces."""
+        return "has no faces"
 
     def fillings(self) -> Iterable[tuple[Ref, Callable[[Floats, Floats], None]]]:
         """Objects that it fills at a spacing, each with a function of the corners (3,) [m] of the object's box."""
@@ -170,10 +169,7 @@ class Model(Kind):
         return ()
 
     def static_masses(self) -> Mapping[str, StaticMass]:
-        """Masses by name that follow from its fields alone, for `check`.
-
-        The name "" stands for the lightest of nameless ones.
-        """
+        """Masses by name that follow from its fields alone, for `check`; "" stands for the lightest nameless one."""
         return {}
 
     def lowest(self) -> float | None:
@@ -347,8 +343,7 @@ class Contact(Kind):
     family: ClassVar[str] = "contacts"
     also_under: ClassVar[str] = "forces"
     mutual: ClassVar[bool] = False
-    """Whether it acts between all masses of its models: these are solved together, and it is assembled for all at
-    once."""
+    """Whether it acts between all masses of its models, which are solved together: it is assembled once for all."""
 
     def ties(self) -> tuple[Ref, ...]:
         """The models and objects that it acts between; empty: all models and the floor."""
@@ -357,6 +352,10 @@ class Contact(Kind):
     def refusals(self, models: Mapping[str, Model]) -> Iterable[Diagnostic]:
         """Errors, for `check`, where its models lack what it requires."""
         return ()
+
+    def keeps_apart(self, models: Mapping[str, Model]) -> bool:
+        """Whether nothing passes through its models in any step; contacts that move their masses then may not act."""
+        return False
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
         """Add gaps and impacts (or the local kernel that backs off) of one model against the others."""

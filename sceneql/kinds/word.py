@@ -156,7 +156,8 @@ class Record(BaseModel):
     """A group of fields inside a word (a mass, a spring, a clock): the same types, no methods of a family."""
 
     said_by: ClassVar[Mapping[str, str]] = {}
-    """Help texts, by name, for fields that it lacks but that are likely to be tried."""
+    """Help texts, by name, for fields that it lacks but that are likely to be tried, and for own ones that are given in
+    another unit, where no other field takes that."""
     own_time: ClassVar[bool] = False
     """Whether `time` in its values is a time of its own, as an age, and not the film's."""
 

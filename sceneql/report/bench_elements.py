@@ -20,6 +20,8 @@ LITTLE = 0.5
 """Time of a run [s] up to which hundreds of them, by all solvers, are worth their while."""
 CLEAR = 2.0
 """An error counts for an order if it is at least this multiple of the reference's own."""
+APART, ALIKE = 1.15, 1.15
+"""Factor by which elements are smaller at least where an order is told, and by which it may differ between sides."""
 
 
 def element_section(
@@ -102,18 +104,32 @@ def _compared(graph: SimulationGraph, island: Island, runs: Sequence[Solved]) ->
 
 
 def _rows(title: str, name: str, runs: Sequence[Solved], reference: Solved, doubt: float) -> Iterator[ElementRun]:
-    """The rows of one quantity, with the order between each run and the coarser one of its element."""
-    coarser: dict[str, ElementRun] = {}
+    """The rows of one quantity, with the order between each run and a coarser one of its element."""
+    coarser: list[tuple[Solved, ElementRun]] = []
     for one in runs:
-        error, before, order = _error(one, reference, name), coarser.get(one.element), math.nan
-        if before is not None and min(error, before.error) > CLEAR * doubt and before.spacing != one.spacing:
-            order = math.log(before.error / error) / math.log(before.spacing / one.spacing)
+        error, order = _error(one, reference, name), math.nan
+        known = [(_finer(one, other), row.error) for other, row in reversed(coarser) if other.element == one.element]
+        times, before = next(((times, error) for times, error in known if times), (0.0, 0.0))
+        if times and min(error, before) > CLEAR * doubt:
+            order = math.log(before / error) / math.log(times)
         value = _largest(one.samples[1]) if name == MOVES else _largest(one.watched[name])
-        coarser[one.element] = row = ElementRun(
+        row = ElementRun(
             title, name, one.element, one.spacing, one.unknowns, value, error, order, one.seconds, one.setup,
             one.compiling,
         )  # fmt: skip
+        coarser.append((one, row))
         yield row
+
+
+def _finer(one: Solved, other: Solved) -> float:
+    """By which factor the elements of a run are smaller; 0 where they are about as large, or of another shape.
+
+    Counts of cells along short sides round alike, so that only the long ones may change.
+    """
+    times = [b / a for a, b in zip(one.sides, other.sides, strict=True)]
+    if min(times) < APART or max(times) > ALIKE * min(times):
+        return 0.0
+    return math.prod(times) ** (1.0 / len(times))
 
 
 def _error(one: Solved, reference: Solved, name: str) -> float:

@@ -45,6 +45,8 @@ class Solved:
     element: str
     spacing: float
     """[m]"""
+    sides: tuple[float, ...]
+    """[m] How large its elements are, along each side of a block, else in the mean."""
     unknowns: int
     seconds: float
     """Median time of the compiled steps [s]."""
@@ -78,7 +80,8 @@ class ElementRun:
     error: float
     """Relative to the largest true number; of displacements the root mean square."""
     order: float
-    """Observed in the spacing, between this run and the coarser one; NaN where there is none."""
+    """Observed in the size of elements, between this run and the last one of coarser elements of about the same shape;
+    NaN where there is none."""
     seconds: float
     """Time of the compiled steps [s]."""
     setup: float
@@ -163,10 +166,11 @@ def _solved(
 
     samples = tuple(np.concatenate(some) for some in zip(*(one for one, _ in own), strict=True))
     along = [(len(one[0]), field) for one, (_, field) in own]
-    spacing = next(iter(kinds.values())).spaced()
+    first = next(iter(kinds))
+    spacing, sides = kinds[first].spaced(), kinds[first].sides(states[first])
     unknowns = sum(count for _, (count, _) in own)
     return Solved(
-        element, spacing, unknowns, statistics.median(steps), min(whole), compiling,
+        element, spacing, sides, unknowns, statistics.median(steps), min(whole), compiling,
         cast("tuple[Floats, Floats, Floats]", samples), along, watched, right,
     )  # fmt: skip
 

@@ -144,6 +144,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
     island = run.island
     order, control = run.march.stepper.method.order, run.march.stepper.control
     bound = stability(run.march, run.methods.bounding)
+    touching = sorted({contact for contact, _, _ in island.contacts})
     later = later_bound(island, graph.tasks, graph.settings.clock.end)
     return {
         "models": list(island.models),
@@ -153,7 +154,10 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
         "ties": sorted({force for force, _ in island.forces if isinstance(graph.tasks[force].kind, Tie)}),
         "redundant": _redundant(run),
         "singular": _singular(run),
-        "contacts": sorted({contact for contact, _, _ in island.contacts}),
+        "drives": [tie.name for tie in run.assembly.ties if tie.drive],
+        "drive_mode": "exact" if run.assembly.driven else "local",
+        "drive_why": f"as {' and '.join(touching)}" if touching else run.assembly.contact_why,
+        "contacts": touching,
         "contact_mode": run.assembly.contact_mode,
         "contact_why": _contact_why(graph, run),
         "contact_remarks": _contact_remarks(graph, run),
@@ -289,6 +293,9 @@ def text(plan: dict[str, Any]) -> str:
             lines.append(f"  ties: {', '.join(island['ties'])}, {rows} conditions{twice}")
         for like, ties in island["singular"].items():
             lines.append(f"    {', '.join(ties)}: singular at the start, as {like}")
+        if island["drives"]:
+            mode = f"{island['drive_mode']}, {island['drive_why']}"
+            lines.append(f"    stops, motors and friction of {', '.join(island['drives'])}: {mode}")
         if island["forces"]:
             lines.append(f"  forces: {', '.join(island['forces'])}")
         lines += [f"    {force}: {remark}" for force, remark in island["force_remarks"].items()]

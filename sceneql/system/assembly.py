@@ -266,7 +266,7 @@ class Assembly(Protocol):
     overlaps: list[Any]
     """What measures in a run how deep rigid bodies are in one another (contacts/distance/depths.py)."""
     contact_why: str
-    """Why contacts of rigid bodies have their mode, for `explain`."""
+    """Why contacts of rigid bodies have their mode, or, without contacts, stops, motors and friction: for `explain`."""
 
     def tied(self, model: str) -> bool:
         """Whether ties hold a body or mass of a model."""

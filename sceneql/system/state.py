@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from sceneql.frame import Floats
     from sceneql.system.fields import Membrane
 
@@ -38,7 +40,7 @@ class Skin:
     held: Any
     """(bodies, 3) bool: components of the position that do not move freely."""
     stiffness: float
-    """The solid's elastic modulus [Pa]: about the pressure at which a barrier contact closes half its gap."""
+    """The elastic modulus of what it covers [Pa]: about the pressure at which a barrier closes half its gap."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,6 +53,8 @@ class Springs:
     """(2, m): stiffness [N/m] and damping [N s/m] of each spring."""
     period: float
     """Lower bound of the oscillation periods [s]."""
+    faces: Callable[[], Skin] | None = None
+    """The surface of their net, for contacts by a barrier; None without."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -41,10 +41,12 @@ class TieRow:
     about axes of the world, times the constants, sum to full turns; the vectors are, for each mover, the axis, a
     direction across it at the start, and that direction in its own axes, then the axles r_a, r_b and the line from the
     one to the other at the start, against which both turn, with its length as the third constant (0: they turn against
-    the world). r are relative to the movers' positions [m].
+    the world); `carried`: the same with axes n_a, n_b that the movers carry, each against what both axles are in, with
+    vectors n_a, n_b, what the wheels count from at the start, the axles r_a, r_b, and the line's length as the third
+    constant (0: each counts against the axis of the other). r are relative to the movers' positions [m].
     """
 
-    kind: Literal["point", "angle", "distance", "gear", "ball", "written"]
+    kind: Literal["point", "angle", "distance", "gear", "ball", "written", "carried"]
     vectors: tuple[Triple, ...] = ()
     constants: tuple[float, ...] = ()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from sceneql import kinds
 from sceneql.bodies.time_shift import APART, later
@@ -84,6 +84,12 @@ class Part(Record):
 
 class Hold(Part):
     """What holds nodes of a solid, and moves them."""
+
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("rotation", "rotate", "turn", "angle", "spin", "axis", "about", "twist"),
+        "a hold turns with an object that it follows: write `follows: NAME`, of one whose `rotation` has keys, as "
+        "`rotation: {about: x, angle: {keys: {0 s: 0 deg, 1 s: 90 deg}}}`",
+    )
 
     components: Literal["xyz", "x", "y", "z", "xy", "xz", "yz"] = field("In which directions it holds.", "xyz")
     shift: Position = field("How far what is held has been moved from where it starts.", "0 0 0 m")

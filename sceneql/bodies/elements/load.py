@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from sceneql.bodies.elements.hold import HELD, LOADED, Hold, Part
 from sceneql.kinds import Problem, Quantity, Value, field
@@ -28,6 +28,10 @@ MOST_TURNED = 700
 
 class Load(Part):
     """What presses or pulls on a part of the surface: faces with all corners in it, or what is `within` a distance."""
+
+    said_by: ClassVar[Mapping[str, str]] = {
+        "traction": "a traction acts on an area, in Pa; along a line write the force in all, `force: 0 -1 0 N`"
+    }
 
     traction: Annotated[Value, Quantity(dim.PRESSURE, (3,))] | None = field(
         "Force over the area that the part has at rest; it keeps its direction.", None
@@ -84,14 +88,22 @@ class Load(Part):
                 inside[on.nodes] = True
             found = spread(np.flatnonzero(inside[faces[:, :3]].all(axis=1)), finely=False)
         if not len(found.faces):
-            message = f"'{name}' acts on no part of the surface"
-            help = "a face of the surface is loaded where all its corners lie in the part"
-            if self.force is None and self.where is not None:
-                help += "; on a line, `where: y == 0`, a `force` acts"
-            raise ScriptError(
-                [Diagnostic("no-mass", message, self.place() or line, None if self.within is not None else help)]
-            )
+            raise ScriptError([self._lost(name, line)])
         return found
+
+    def _lost(self, name: str, line: Span | None) -> Diagnostic:
+        """The error of a load that acts on no face."""
+        from sceneql.bodies.filling.held_lines import line_of
+
+        message, help = f"'{name}' acts on no part of the surface", None
+        how = next(one for one in HOW if getattr(self, one) is not None)
+        if how != "force" and line_of(self, None) is not None:
+            message = f"an equality selects a line, or a point, and the {how} of '{name}' acts on an area"
+            help = "write the force in all, `force: 0 -1 0 N`, or a part with a width, `where: abs(y - 0.1) < 0.02`"
+        elif self.within is None:
+            help = "a face of the surface is loaded where all its corners lie in the part"
+            help += "" if how == "force" or self.where is None else "; on a line, `where: y == 0`, a `force` acts"
+        return Diagnostic("no-mass", message, self.place() or line, help)
 
     def assemble(
         self, name: str, mesh: ElementMesh, held: Any, assembly: Assembly, bodies: Bodies, line: Span | None

@@ -29,6 +29,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_MASS,
     AT_TWIST,
     AT_W,
+    CARRIED,
     DISTANCE,
     FIRST,
     GEAR,
@@ -38,6 +39,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     MOVED,
     MOVER,
     NUMBERS,
+    OF_LINE,
     POSITION,
     ROTATION,
     ROW_INTS,
@@ -154,6 +156,8 @@ def hold(t, y, entries, floats, ints):
                 rod = min(rod, floats[ints[other + NUMBERS] + 6])
             if ints[other + KIND] == GEAR and floats[ints[other + NUMBERS] + LENGTH] > 0.0:
                 rod = min(rod, floats[ints[other + NUMBERS] + LENGTH])
+            if ints[other + KIND] == CARRIED and floats[ints[other + NUMBERS] + OF_LINE] > 0.0:
+                rod = min(rod, floats[ints[other + NUMBERS] + OF_LINE])
             end += 1
         one, two = ints[MOVED_AT] + MOVED * ints[row + FIRST], ints[MOVED_AT] + MOVED * ints[row + SECOND]
         for k in range(begin, end):

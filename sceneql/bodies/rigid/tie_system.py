@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Mover, Slopes, Tied
 
 KERNELS = "sceneql.bodies.rigid.tie_kernels"
-KINDS = ("point", "angle", "distance", "gear", "ball", "written")
+KINDS = ("point", "angle", "distance", "gear", "ball", "written", "carried")
 
 IMPLIED, ROUNDING = 1e-10, 1e-13
 """Pivot of a normalized row, the square of its part independent of the rows before, below which the row counts as
@@ -35,12 +35,12 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     """
     import numpy as np
 
+    from sceneql.bodies.gears.wheels import geared
     from sceneql.bodies.rigid import tie_matrix_kernels as kernels
     from sceneql.bodies.rigid.tie_kernels import survey
     from sceneql.bodies.rigid.tie_matrix import RowsOfTie, tie_matrix
     from sceneql.bodies.rigid.tie_rows_kernels import MOVED, MOVER, ROW, ROW_INTS
     from sceneql.bodies.rigid.tie_start import follow
-    from sceneql.bodies.rigid.wheels import geared
 
     ties = geared(ties, assembly)
     movers: dict[tuple[int, ...], int] = {}

@@ -174,6 +174,8 @@ def better_alone(
         better = helped.direction_alone(node)
     if better is None and not shaped:
         better = helped.plain_define(reader, node) or helped.in_other_unit(reader, node, info, rest, name)
+        if better is None or better.startswith(helped.BY_UNIT):
+            better = (cls.said_by if issubclass(cls, kinds.Record) else {}).get(name, better)
     found[before] = replace(found[before], help=better)
 
 

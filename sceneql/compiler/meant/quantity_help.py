@@ -37,6 +37,8 @@ ANSWERS = (*TRUE, "false", "no", "off")
 FRAMES = 30
 """Frames a second of a film that says nothing else."""
 _BY_FRAME = re.compile(r"([-+.\d]+)\s*/\s*frames?")
+BY_UNIT = ("it has no unit", "it is measured in")
+"""Beginnings of helps for a value in another unit where there is no better one."""
 WITHOUT = ("for a product", "units are such", "did you mean", "a number of", "what is counted")
 """Beginnings of helps for an unknown unit behind a number that has none."""
 OUTPUTS = 3
@@ -192,7 +194,7 @@ def in_other_unit(reader: Any, node: Node, info: Any, others: Mapping[str, Any],
     if wanted is not None and wanted.plain and node.span.text[-1:] in ("C", "F", "K"):
         return None
     if numbers is not None and wanted is not None and wanted.plain:
-        return f"it has no unit: write `{name}: {numbers[1]}`"
+        return f"{BY_UNIT[0]}: write `{name}: {numbers[1]}`"
     found = [kinds.written_name(name) for name in quantities_fitting(reader, node, others)]
     if len(found) == 1:
         return f"that is what `{found[0]}` takes: write `{found[0]}: {node.span.text}`"
@@ -200,7 +202,7 @@ def in_other_unit(reader: Any, node: Node, info: Any, others: Mapping[str, Any],
         return None
     if wanted == MASS and node.span.text.endswith("N"):
         return f"a weight is a mass times gravity: write `{node.span.text}/(9.81 m/s^2)`"
-    return f"it is measured in {(unit := unit_of(wanted))}, as `{numbers[1]} {unit}`"
+    return f"{BY_UNIT[1]} {(unit := unit_of(wanted))}, as `{numbers[1]} {unit}`"
 
 
 def by_own_density(reader: Any, written: Mapping[str, Node], first: int) -> None:

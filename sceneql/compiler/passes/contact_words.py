@@ -22,8 +22,32 @@ def report_contacts(tasks: Mapping[str, Task], groups: Iterable[Island], found: 
             kinds = {name: one for name in models if (one := _model(tasks[name])) is not None}
             span = tasks[contact].span
             found.extend(replace(one, span=one.span or span) for one in kind.refusals(kinds))
+        _report_beside_barriers(acting, tasks, found)
         alone = [name for name in acting if not getattr(tasks[name].kind, "mutual", False)]
         _report_shared({name: acting[name] for name in alone}, island, tasks, found)
+
+
+def _report_beside_barriers(acting: Mapping[str, list[str]], tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Report nets in a contact that lets nothing pass and in another one, which moves their masses."""
+    for contact, models in acting.items():
+        kind = tasks[contact].kind
+        kinds = {name: one for name in models if (one := _model(tasks[name])) is not None}
+        if not isinstance(kind, Contact) or not kind.keeps_apart(kinds):
+            continue
+        for other, more in acting.items():
+            beside = tasks[other].kind
+            both = {name: one for name in more if (one := _model(tasks[name])) is not None}
+            nets = [name for name in more if name in kinds and not (kinds[name].has_skin or kinds[name].turns)]
+            if other == contact or not nets or (isinstance(beside, Contact) and beside.keeps_apart(both)):
+                continue
+            text = (
+                f"nothing passes '{nets[0]}' by the barrier of '{contact}', and '{other}' would move its masses past it"
+            )
+            help = (
+                f"leave '{nets[0]}' out of '{other}': a barrier keeps it off itself, too; objects stand in '{contact}'"
+            )
+            found.error("invalid", text, tasks[other].span, help=help)
+            break
 
 
 def warn_of_nothing_hit(tasks: Mapping[str, Task], groups: Iterable[Island], found: Diagnostics) -> None:

@@ -1,19 +1,21 @@
-"""Barrier contacts of elastic solids, and of rigid bodies with them. Imports numpy."""
+"""Barrier contacts of elastic solids and cloth, and of rigid bodies with them. Imports numpy."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sceneql.contacts.barrier.refused import beside_solids
 from sceneql.contacts.barrier.skin_pairs import add_pairs
 from sceneql.contacts.barrier.standing import add_objects, add_objects_to_body
-from sceneql.contacts.barrier.surfaces_of import FIXED, elastic_surfaces, rigid_surfaces
-from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.contacts.barrier.surfaces_of import FIXED, rigid_surfaces, soft_skin, soft_surfaces
+from sceneql.kinds import Ref
+from sceneql.quantities.diagnostic import ScriptError
 
 if TYPE_CHECKING:
-    from sceneql.kinds import Ref, Value
+    from sceneql.kinds import Value
     from sceneql.system import Assembly, Bodies
 
 GAP = 0.05
@@ -27,18 +29,17 @@ COARSER = 3.0
 def assemble(
     assembly: Assembly, everyone: Sequence[Bodies], refs: Sequence[Ref], friction: Value, gap: float | None
 ) -> tuple[int, ...]:
-    """Add the barriers of all elastic solids and rigid bodies.
+    """Add the barriers of all elastic solids, nets of springs that have faces, and rigid bodies.
 
     Returns the integers that `collision` remembers: -3, then the offset of gap and slip in the floats.
     Raises ScriptError for masses without surfaces, and for surfaces that touch or cross at the start.
     """
     for bodies in everyone:
-        if bodies.skin is None and bodies.turning is None:
-            message = f"'{bodies.model}' does not collide together with elastic solids yet"
-            help = "name under `between` what may touch, without it"
-            raise ScriptError([Diagnostic("no-collider", message, assembly.line(), help)])
-    elastic = [bodies for bodies in everyone if bodies.skin is not None]
-    surfaces = elastic_surfaces(elastic, assembly)
+        if soft_skin(bodies) is None and bodies.turning is None:
+            model: Any = assembly.object(Ref(bodies.model))
+            raise ScriptError([beside_solids(bodies.model, model.faceless(), assembly.line())])
+    soft = [bodies for bodies in everyone if soft_skin(bodies) is not None]
+    surfaces = soft_surfaces(soft, assembly)
     corners = [one.at[one.triangles] for one in surfaces]
     sides = [np.linalg.norm(each - each[:, [1, 2, 0]], axis=2).ravel() for each in corners]
     side = float(np.concatenate(sides).mean())
@@ -48,9 +49,8 @@ def assemble(
     told, friction_at = assembly.floats([gap, slip]), assembly.value(friction)
     rigid = rigid_surfaces([one for one in everyone if one.turning is not None], COARSER * side, assembly)
     stiffest = max(one.stiffness for one in surfaces)
-    for bodies in elastic if refs else ():
-        assert bodies.skin is not None
-        add_objects(assembly, bodies, refs, friction_at, (bodies.skin.stiffness, gap, slip), rubs)
+    for bodies, surface in zip(soft, surfaces, strict=True) if refs else ():
+        add_objects(assembly, bodies, refs, friction_at, (surface.stiffness, gap, slip), rubs)
     for one in rigid if refs else ():
         if one.number != FIXED:
             add_objects_to_body(assembly, one, refs, friction_at, (stiffest, gap, slip), rubs)

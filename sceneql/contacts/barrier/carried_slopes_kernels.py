@@ -19,7 +19,7 @@ from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import steepness
 from sceneql.contacts.barrier.pair_weights_kernels import listed, node, stencil
 from sceneql.contacts.barrier.pairs_kernels import known, vertex
-from sceneql.contacts.barrier.skins_slopes_kernels import rubbed
+from sceneql.contacts.barrier.skins_slopes_kernels import ask_for_released, rubbed
 from sceneql.system.signatures_kernels import TERM
 
 ALONE = 6
@@ -58,7 +58,7 @@ def add_column(entries, y, floats, ints, i, first, columns, column, fx, fy, fz):
     at = vertex(ints, i)
     e = first + column
     fixed = ints[at + layout.HELD] + ints[at + layout.HELD + 1] + ints[at + layout.HELD + 2] == 3
-    if ints[at + layout.HELD] == 0:
+    if ints[at + layout.HELD] != 1:
         entries[e] += fx
     if ints[at + layout.HELD + 1] == 0:
         entries[e + columns] += fy
@@ -110,6 +110,7 @@ def slopes(t, y, entries, floats, ints):
     """The entries of all pairs of carriers that have been near so far."""
     if not known(y, floats, ints):
         return
+    ask_for_released(floats, ints)
     moved, vertices, weights = np.zeros((ROWS, COLUMNS)), np.zeros(4, dtype=np.int64), np.zeros(4)
     for edges in (False, True):
         for m in range(listed(floats, ints, edges)):

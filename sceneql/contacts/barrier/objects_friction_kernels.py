@@ -35,7 +35,7 @@ def strike(y, floats, ints, p, x, y_, z):
         half = 0.5 * floats[ints[layout.INVERSE] + number]
         for c in range(3):
             part = x if c == 0 else y_ if c == 1 else z
-            if ints[held + 3 * node + c] == 0:
+            if ints[held + 3 * node + c] == 0 and half > 0.0:
                 at = ints[layout.VELOCITY] + 3 * number + c
                 before = y[at]
                 y[at] += half * part

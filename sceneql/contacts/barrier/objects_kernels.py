@@ -143,6 +143,14 @@ def lag(n, floats, ints):
 
 
 @lean_inlined
+def pinned(floats, ints, node):
+    """Whether a node is a pinned mass: what its motion gives the barrier is the pin's work."""
+    inverse = floats[ints[layout.INVERSE] + ints[ints[layout.LIST] + node]]
+    held = ints[layout.LIST] + ints[layout.NODES] + 2 * ints[layout.EDGES] + 3 * node
+    return inverse == 0.0 and ints[held] == 0
+
+
+@lean_inlined
 def add(rate, y, floats, ints, p, x, y_, z):
     """Add a force to the two nodes of a point, or to its body, and take its power from the work."""
     if ints[layout.ARMS] >= 0:
@@ -154,6 +162,8 @@ def add(rate, y, floats, ints, p, x, y_, z):
         rate[at] += 0.5 * x
         rate[at + 1] += 0.5 * y_
         rate[at + 2] += 0.5 * z
+        if pinned(floats, ints, node):
+            continue
         rate[ints[layout.WORK]] -= 0.5 * (x * y[at] + y_ * y[at + 1] + z * y[at + 2])
 
 

@@ -35,7 +35,9 @@ there are rigid bodies, of each carrier (carried_slopes_kernels.py)."""
 
 POSITION, VELOCITY, WORK, INVERSE, ROTATION, MOMENTUM, INERTIA, ARM, BODY, HELD, VERTEX = *range(10), 12
 """A vertex: the integers of its system.Place, with an ARM on a rigid body; its solid, whether each component is
-held."""
+held (1). A mass that was pinned when the Jacobian was laid out has PINNED at HELD."""
+
+PINNED = 2
 
 GAP, SLIP, SIDE = range(3)
 """NUMBERS: the gap, speed of slip, mean side of the triangles."""

@@ -17,6 +17,12 @@ from sceneql.contacts.barrier.pairs_kernels import known, vertex
 from sceneql.system.signatures_kernels import TERM, A, F, I, N
 
 
+@lean_inlined
+def pinned(floats, ints, at):
+    """Whether the vertex of ints[at:] is a pinned mass: what its motion gives the barrier is the pin's work."""
+    return floats[ints[at + layout.INVERSE]] == 0.0 and ints[at + layout.HELD] != 1
+
+
 @lean(types.void(A, A, A, I, N, F, F, F))
 def add(rate, y, floats, ints, k, x, y_, z):
     """Add a force to a vertex, and take its power from the work."""
@@ -28,6 +34,8 @@ def add(rate, y, floats, ints, k, x, y_, z):
     rate[v] += x
     rate[v + 1] += y_
     rate[v + 2] += z
+    if pinned(floats, ints, at):
+        return
     rate[ints[at + layout.WORK]] -= x * y[v] + y_ * y[v + 1] + z * y[v + 2]
 
 

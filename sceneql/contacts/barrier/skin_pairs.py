@@ -57,6 +57,7 @@ def add_pairs(
     rows = np.column_stack(
         [np.concatenate([one.places for one in surfaces]), solid, np.concatenate([one.held for one in surfaces])]
     ).astype(np.int64)
+    _mark_pinned(rows, assembly)
     lists = np.concatenate([rows.ravel(), corners.ravel(), edges.ravel()]).astype(np.int64)
     head = [
         *(len(rest), len(corners), len(edges), layout.HEAD),
@@ -83,6 +84,8 @@ def add_pairs(
         known = Places(len(rest), np.arange(len(rest), dtype=np.int64) * (len(rest) + 1), rows)
 
     def grow(floats: Floats) -> bool:
+        if _released(floats, ints, assembly):
+            return True
         near = listed(floats, ints)
         soon = near[near[:, 0] < gap + AHEAD * side]
         return known.add(soon[:, 1:]) or known.add(near[:, 1:])
@@ -96,6 +99,24 @@ def add_pairs(
     if rubs:
         assembly.after_step(AFTER, ints)
     assembly.grows(grow)
+
+
+def _mark_pinned(rows: Any, assembly: Assembly) -> None:
+    """Mark masses that are pinned at the start in rows (n, VERTEX) of vertices."""
+    masses = (rows[:, layout.ROTATION] < 0) & (rows[:, layout.HELD] == 0)
+    pinned = masses & (assembly.numbers()[rows[:, layout.INVERSE]] == 0.0)
+    rows[pinned, layout.HELD] = layout.PINNED
+
+
+def _released(floats: Floats, ints: Any, assembly: Assembly) -> bool:
+    """Whether pins have let go of masses since; these count as unknowns then."""
+    last = layout.HEAD + layout.VERTEX * ints[layout.VERTICES]
+    rows = ints[layout.HEAD : last].reshape(-1, layout.VERTEX)
+    free = (rows[:, layout.HELD] == layout.PINNED) & (floats[rows[:, layout.INVERSE]] > 0.0)
+    for at in rows[free, layout.INVERSE].tolist():
+        assembly.write(at, floats[at : at + 1])
+    rows[free, layout.HELD] = 0
+    return bool(free.any())
 
 
 def listed(floats: Floats, ints: Any) -> Floats:

@@ -24,7 +24,7 @@ def strike(y, floats, ints, at, x, y_, z):
         inverse = floats[ints[own + layout.INVERSE]]
         for c in range(3):
             part = weight * (x if c == 0 else y_ if c == 1 else z)
-            if ints[own + layout.HELD + c] == 0:
+            if ints[own + layout.HELD + c] != 1 and inverse > 0.0:
                 v = ints[own + layout.VELOCITY] + c
                 before = y[v]
                 y[v] += inverse * part

@@ -55,6 +55,15 @@ def add(entries, floats, ints, first, i, j, weight, xx, xy, xz, yy, yz, zz):
     add_block(entries, 9 * (first + at), weight, xx, xy, xz, yy, yz, zz)
 
 
+@lean_inlined
+def ask_for_released(floats, ints):
+    """Ask for unknowns of masses that pins have let go since the Jacobian was laid out."""
+    for i in range(ints[layout.VERTICES]):
+        at = vertex(ints, i)
+        if ints[at + layout.HELD] == layout.PINNED and floats[ints[at + layout.INVERSE]] > 0.0:
+            floats[channels.GROWS] = 1.0
+
+
 @lean(TERM, inner=True)
 def slopes(t, y, entries, floats, ints):
     """The blocks; rows of held components are 0."""
@@ -93,6 +102,7 @@ def slopes(t, y, entries, floats, ints):
                     weight = floats[at + layout.WEIGHTS + k] * floats[at + layout.WEIGHTS + n]
                     if weight != 0.0:
                         add(entries, floats, ints, blocks, i, j, load * weight, xx, xy, xz, yy, yz, zz)
+    ask_for_released(floats, ints)
     for i in range(count):
         for c in range(3):
             if ints[vertex(ints, i) + layout.HELD + c] == 1:

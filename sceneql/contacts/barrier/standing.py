@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.contacts.barrier import objects_layout as layout
+from sceneql.contacts.barrier.surfaces_of import soft_skin
 from sceneql.contacts.colliders import surfaces
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
@@ -38,7 +39,7 @@ def add_objects(
     ``numbers``: by objects_layout.NUMBERS; ``rubs``: whether there may be friction.
     Raises ScriptError for an object without a collider, or one that the skin touches at the start.
     """
-    skin = bodies.skin
+    skin = soft_skin(bodies)
     assert skin is not None
     nodes, which = np.unique(skin.triangles, return_inverse=True)
     corners = which.reshape(-1, 3)

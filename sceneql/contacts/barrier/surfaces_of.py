@@ -1,4 +1,4 @@
-"""Surfaces between which a barrier acts: skins of elastic solids, triangles on rigid bodies. Imports numpy."""
+"""Surfaces between which a barrier acts: of elastic solids, cloth and rigid bodies. Imports numpy."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
-    from sceneql.system import Assembly, Bodies
+    from sceneql.system import Assembly, Bodies, Skin
 
 FIXED = -1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Surface:
-    """Triangulated surface of an elastic solid or a rigid body."""
+    """Triangulated surface of an elastic solid, a net of springs or a rigid body."""
 
     model: str
     number: int
-    """Number of the solid: 0 or more if elastic, FIXED for fixed rigid bodies, less for rigid bodies that move."""
+    """Number of the model: 0 or more if elastic or cloth, FIXED for fixed rigid bodies, less for those that move."""
     places: NDArray[int64]
     """(n, 8): system.Place.ints of the vertices."""
     held: NDArray[int64]
@@ -42,11 +42,18 @@ class Surface:
         return self.number < 0
 
 
-def elastic_surfaces(everyone: Sequence[Bodies], assembly: Assembly) -> list[Surface]:
-    """Surfaces of elastic solids."""
+def soft_skin(bodies: Bodies) -> Skin | None:
+    """The skin of an elastic solid, or the faces of a net of springs; None for other masses and rigid bodies."""
+    if bodies.skin is None and bodies.springs is not None:
+        return None if bodies.springs.faces is None else bodies.springs.faces()
+    return bodies.skin
+
+
+def soft_surfaces(everyone: Sequence[Bodies], assembly: Assembly) -> list[Surface]:
+    """Surfaces of elastic solids, and of nets of springs that have faces."""
     found = []
     for number, bodies in enumerate(everyone):
-        skin = bodies.skin
+        skin = soft_skin(bodies)
         assert skin is not None
         nodes, which = np.unique(skin.triangles, return_inverse=True)
         places = np.full((len(nodes), 8), -1, dtype=np.int64)

@@ -159,20 +159,27 @@ def assemble_drives(assembly: Assembly) -> bool:
     """Add stops, motors and friction of the ties of few bodies that touch nothing; returns whether it takes them.
 
     It takes them where the solver chooses its steps by a tolerance and is explicit, up to the instant at which it finds
-    no way.
+    no way. The reason is kept for `explain`.
     """
     from sceneql.bodies.rigid.tie_system import integers
     from sceneql.bodies.rigid.tied_step import moves
 
     held = {integers(mover) for tie in assembly.ties for mover in tie.movers if moves(mover, assembly)}
-    if len(held) > MOST_DRIVEN or not assembly.by_tolerance or assembly.went_on:
-        return False
-    none = Value(Number(0.0))
-    try:
-        assemble(assembly, (), (), none, none, none, gives_way=True)
-    except ScriptError:  # a motor that follows what has no known rate, or jumps
-        return False
-    return True
+    none, why = Value(Number(0.0)), ""
+    if assembly.went_on:
+        since = next(iter(assembly.went_on.values())).t
+        why = f"what is left of the run from {since:.6g} s on, where `exact` found no way"
+    elif len(held) > MOST_DRIVEN:
+        why = f"more than {MOST_DRIVEN} bodies are tied"
+    elif not assembly.by_tolerance:
+        why = "`exact` locates events in steps that a tolerance chooses, of an explicit method"
+    else:
+        try:
+            assemble(assembly, (), (), none, none, none, gives_way=True)
+        except ScriptError as refused:  # a motor that follows what has no known rate, or jumps
+            why = refused.diagnostics[0].message
+    assembly.contact_why = why or f"chosen for up to {MOST_DRIVEN} bodies; `local` goes on where it finds no way"
+    return not why
 
 
 @dataclass(frozen=True, slots=True)

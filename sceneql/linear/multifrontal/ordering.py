@@ -45,12 +45,15 @@ def minimum_degree(graph: Any) -> NDArray[int64]:
     """Elimination order (n,) of a symmetric pattern by multiple minimum degree (Liu 1985), from SuperLU."""
     import numpy as np
     from scipy.sparse import csc_array, diags_array
-    from scipy.sparse.linalg import splu
+    from scipy.sparse.linalg import spilu
 
-    # The diagonal dominates, so SuperLU does not pivot. Only the order is used.
+    # The diagonal dominates, so SuperLU does not pivot. Only the order is used, which comes before its factors: those
+    # of the incomplete kind, with all fill dropped, take a tenth of the time, of large ones a hundredth.
     degrees = np.diff(graph.indptr)
     matrix = csc_array(diags_array(2.0 * degrees.astype(np.float64)) - graph)
-    factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    factors = spilu(
+        matrix, 1.0, 2.0, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+    )
     return np.argsort(factors.perm_c).astype(np.int64)
 
 

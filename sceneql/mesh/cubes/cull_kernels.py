@@ -1,11 +1,12 @@
 # mypy: ignore-errors
-"""Blocks of cells that the surface may meet: boxes are halved until intervals prove them inside or outside."""
+"""Blocks of cells that the surface may meet: boxes are halved until they are proved inside or outside."""
 
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.tape.simplify_kernels import simplify
 from sceneql.field.tape.tape_ops import NOWHERE, TAPE, WHOLE
 from sceneql.mesh.cubes.grid import BLOCK
+from sceneql.mesh.cubes.sign_kernels import one_sign
 
 REACH = 4
 """Blocks along a side of the boxes that are tested first."""
@@ -34,12 +35,17 @@ def verdict(code, constants, parts, scratch, grid, i, j, k, cells):
     return CUT if status == WHOLE else BROKEN
 
 
-@lean(f"int64({TAPE}, int32[:, ::1], float64[:, ::1], float64[::1], int64[::1], int64, int32[:, ::1])")
-def cull(code, constants, parts, scratch, short, near, grid, counts, layer, found):
+@lean(
+    f"int64({TAPE}, int32[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1],"
+    " int64[::1], int64, int32[:, ::1])"
+)
+def cull(
+    code, constants, parts, scratch, short, near, second, registers, points, grid, counts, layer, found
+):  # fmt: skip
     """Write the blocks (x, y, z) of a layer of REACH blocks that the surface may meet to ``found``; how many.
 
     ``grid`` holds the first node and the cell [m], ``counts`` the blocks along each axis; ``short`` and ``near`` are
-    room for a simplified tape.
+    room for a simplified tape, ``second`` to ``points`` working memory.
     """
     n = 0
     z = layer * REACH
@@ -68,12 +74,18 @@ def cull(code, constants, parts, scratch, short, near, grid, counts, layer, foun
                     bz = hz + (one >> 2)
                     if bx >= counts[0] or by >= counts[1] or bz >= counts[2]:
                         continue
-                    if (
-                        verdict(code2, constants, parts2, scratch, grid, bx * BLOCK, by * BLOCK, bz * BLOCK, BLOCK)
-                        != CLEAR
-                    ):
-                        found[n, 0] = bx
-                        found[n, 1] = by
-                        found[n, 2] = bz
-                        n += 1
+                    i, j, k = bx * BLOCK, by * BLOCK, bz * BLOCK
+                    at = verdict(code2, constants, parts2, scratch, grid, i, j, k, BLOCK)
+                    clear = at == CLEAR
+                    if at == CUT:
+                        u, v, w = grid[0] + i * grid[3], grid[1] + j * grid[3], grid[2] + k * grid[3]
+                        clear = one_sign(
+                            code2, constants, parts2, scratch, second, registers, points, u, v, w, BLOCK * grid[3]
+                        )
+                    if clear:
+                        continue
+                    found[n, 0] = bx
+                    found[n, 1] = by
+                    found[n, 2] = bz
+                    n += 1
     return n

@@ -111,7 +111,10 @@ class GridExtraction:
 
         def work(layer: int) -> None:
             r, blocks = self.room(), np.empty((most, 3), dtype=np.int32)
-            n = cull(*self.program, r.scratch, r.short[0], r.near[0], grid.numbers, counts, layer, blocks)
+            n = cull(
+                *self.program, r.scratch, r.short[0], r.near[0], r.second, r.registers, r.points, grid.numbers, counts,
+                layer, blocks,
+            )  # fmt: skip
             found[layer] = blocks[:n].copy()
 
         over_tiles(layers, work)

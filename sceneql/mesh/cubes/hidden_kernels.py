@@ -6,74 +6,24 @@ import numpy as np
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.tape.batch_kernels import evaluate
-from sceneql.field.tape.curvature_kernels import bulge, curvature
 from sceneql.field.tape.simplify_kernels import simplify
-from sceneql.field.tape.steepness_kernels import steepness, turning
 from sceneql.field.tape.tape_kernels import value
-from sceneql.field.tape.tape_ops import MAX, MIN, NOWHERE, TAPE, WHOLE
+from sceneql.field.tape.tape_ops import NOWHERE, TAPE, WHOLE
 from sceneql.mesh.cubes.corner_kernels import in_doubt, least_at_corners, of_corners
 from sceneql.mesh.cubes.cull_kernels import CLEAR, CUT, verdict
 from sceneql.mesh.cubes.grid import BLOCK
 from sceneql.mesh.cubes.sample_kernels import NODES, sample
+from sceneql.mesh.cubes.sign_kernels import UNKNOWN, WIDER, deciding, enough, steep_and_bent
 from sceneql.mesh.cubes.slipped_kernels import slipped
 
 SIDE = BLOCK // 2
 """Cubes along an eighth of a block, and pairs of cubes along a block."""
 DEEPEST = 2
 """How often a cube may be halved before it is left unresolved."""
-WIDER = 1.0 + 1.0e-12
-"""Factor of a cube's side for its rounding."""
-UNKNOWN = 1.0e300
-"""In place of a bound where there is none."""
 SHALLOW = 1.0e-12
 """Depth to which f may go to the other side of zero by rounding, where it touches zero."""
 CAP = 0.125
 """Greatest thickness, in cubes, of a bulge through a face that counts as a part of the sheet beyond the face."""
-
-
-@inlined
-def deciding(code, scratch):
-    """The row whose sign is that of the last in the box for which ``box`` left WHOLE in scratch, and no nearer to zero.
-
-    As where the faces that cut a solid are far away: max(f, g) has the sign of f where g < 0.
-    """
-    row = code.shape[0] - 1
-    while code[row, 0] == MAX or code[row, 0] == MIN:
-        left, right = code[row, 1], code[row, 2]
-        if scratch[right, 1] < 0.0 if code[row, 0] == MAX else scratch[right, 0] > 0.0:
-            row = left
-        elif scratch[left, 1] < 0.0 if code[row, 0] == MAX else scratch[left, 0] > 0.0:
-            row = right
-        else:
-            break
-    return row
-
-
-@inlined
-def steep_and_bent(code, constants, parts, scratch, second):
-    """What ``enough`` takes for cubes in the box for which ``box`` left WHOLE in scratch; infinite where unknown.
-
-    (how steep f is along the axes in which it may rise and fall, how bent it is upward, how bent it is downward).
-    """
-    gx, gy, gz = steepness(code, constants, parts, scratch)
-    if not gx + gy + gz < UNKNOWN:
-        return np.inf, np.inf, np.inf
-    last = code.shape[0] - 1
-    turn = 0.5 * turning(scratch, last) * (1.0 + 1.0e-9)
-    if turn == 0.0 or not curvature(code, parts, scratch, second):
-        return turn, np.inf, np.inf
-    below, above = bulge(second, last)
-    return turn, below * (1.0 + 1.0e-9), above * (1.0 + 1.0e-9)
-
-
-@inlined
-def enough(steep, bent, h):
-    """The least |f| at the corners of a cube of side ``h``, all of one sign, that proves its inside to have this sign.
-
-    By the axes along which f is monotone, or by its second derivatives, which bound how far it lies from what is linear
-    along each axis between the corners.
-    """
-    return min(min(steep * h, bent * h * h), UNKNOWN)
 
 
 @inlined

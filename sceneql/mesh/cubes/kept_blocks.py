@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sceneql.mesh.cubes.grid_extraction import Found, GridExtraction, beyond
+from sceneql.mesh.cubes.kept_kernels import take
 
 if TYPE_CHECKING:
     import numpy as np
@@ -71,16 +72,17 @@ def _some(known: Found, rows: Rows) -> Found:
     """What was found in the blocks ``rows`` (n,) alone, in their order."""
     import numpy as np
 
-    begin, vertices = _runs(known.begin, rows)
-    cube_at, cubes = _runs(known.cube_at, rows)
+    begin, cube_at = _begins(known.begin, rows), _begins(known.cube_at, rows)
     triangle_at, own_at = _begins(known.triangle_at, rows), begin[-1] + _begins(known.own_at, rows)
-    place, normal = np.zeros((2, int(own_at[-1]), 3))
-    place[: len(vertices)], normal[: len(vertices)] = known.place[vertices], known.normal[vertices]
-    blocks = known.blocks[rows]
-    return Found(
-        blocks, beyond(blocks), begin, cube_at, triangle_at, own_at, known.keys[vertices], known.cubes[cubes],
-        place, normal,
+    place, normal = np.empty((2, int(own_at[-1]), 3))
+    place[begin[-1] :] = normal[begin[-1] :] = 0.0
+    keys, cubes = np.empty(int(begin[-1]), known.keys.dtype), np.empty((int(cube_at[-1]), 2), known.cubes.dtype)
+    take(
+        rows, known.begin, known.cube_at, known.keys, known.cubes, known.place, known.normal, begin, cube_at, keys,
+        cubes, place, normal,
     )  # fmt: skip
+    blocks = known.blocks[rows]
+    return Found(blocks, beyond(blocks), begin, cube_at, triangle_at, own_at, keys, cubes, place, normal)
 
 
 def _begins(at: Ints, rows: Rows) -> Ints:
@@ -91,11 +93,3 @@ def _begins(at: Ints, rows: Rows) -> Ints:
 
     begin: Ints = np.concatenate([[0], np.cumsum(np.diff(at)[rows])])
     return begin
-
-
-def _runs(at: Ints, rows: Rows) -> tuple[Ints, Rows]:
-    """What ``_begins`` finds, and all that the rows hold."""
-    import numpy as np
-
-    begin = _begins(at, rows)
-    return begin, np.arange(begin[-1]) + np.repeat(at[rows] - begin[:-1], np.diff(begin))

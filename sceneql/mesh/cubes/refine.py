@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from sceneql.mesh.bounded import Corner, bounded
 from sceneql.mesh.cubes.faces import Curves, Sides, among, border_curves, face_sides
-from sceneql.mesh.cubes.grid import BLOCK, Grid, grid_around
+from sceneql.mesh.cubes.grid import BLOCK, MOST_BLOCKS, Grid, grid_around
 from sceneql.mesh.cubes.grid_extraction import GridExtraction
 from sceneql.mesh.cubes.hidden_kernels import DEEPEST
 from sceneql.mesh.cubes.kept_blocks import KeptBlocks
@@ -52,6 +52,12 @@ tolerance that FINE would miss."""
 TURN = 0.8
 """Largest difference of normals along a side, in cells, of triangles that stay: about eight times their distance from
 the surface."""
+SEAMLESS = 0.4
+"""Time for a triangle of cells of one size, relative to one of cells that are cut among others."""
+STILL_BENT = 2.0
+"""Most triangles where bent cells are cut after all cells have got half the side, by those where they are cut before:
+those of creases; of smooth surfaces there are fewer.
+"""
 SAFE = 0.5
 """Share of the tolerance to be reached along creases, where the error falls with the factor of subdivision."""
 FEW = 0.25
@@ -76,6 +82,7 @@ def refined(
     cells in which f has the other sign between corners of one sign; with a ``tolerance`` [m] also cells with triangles
     farther from the surface, unless these are more than FEW. They are cut by FINEST where the surface is seen to pass
     between corners of fine cells, within MOST_TWICE triangles. No cell is cut if groups are more than MOST_GROUPS.
+    Where a smooth surface turns by too much nearly everywhere, all cells get half the side.
     The mesh is a closed 2-manifold; its bytes do not depend on the number of threads. Raises ValueError as
     ``grid_around``.
     """
@@ -86,6 +93,8 @@ def refined(
     blocks = shop.met()
     found, (where, volumes, seen) = shop.looked_into(blocks, 1, FINE)
     coarse, doubt = Level(shop, found, len(blocks)), Unresolved(where, volumes, grid, seen)
+    if tolerance is None and _turns_much(coarse, grid, numbers):
+        return refined(tape, low, high, 0.5 * cell)
     for cells, parts, most in _to_cut(whole, coarse, grid.cell, tolerance):
         asked = np.concatenate([cells, doubt.where[doubt.seen]])
         groups = _groups(asked, parts, numbers)
@@ -101,6 +110,24 @@ def refined(
         if parts < FINEST and len(finest) <= MANY_GROUPS:
             made, left = _cut(shop, coarse, doubt, finest, FINEST)
     return unfolded(whole, made), left
+
+
+def _turns_much(coarse: Level, grid: Grid, numbers: Numbering) -> bool:
+    """Whether half the side for all cells takes less time than to cut by FINE those in which normals vary by too much.
+
+    As for a smooth surface all of which turns by too much: in cells of half the side few are left to be cut.
+    """
+    import numpy as np
+
+    asked, halved = coarse.bent | (coarse.turns > TURN * grid.cell), COARSER**2 * len(coarse.triangles)
+    if not asked.any() or halved > MOST_BENT or COARSER**3 * np.prod(grid.blocks + 1.0) > MOST_BLOCKS:
+        return False
+    group, owners = BLOCK // FINE, numbers.of(coarse.cells // (BLOCK // FINE))
+    cut, bent = (
+        FINE**2 * int(np.isin(owners, numbers.of(coarse.places_of(np.flatnonzero(some)) // group)).sum())
+        for some in (asked, coarse.bent)
+    )
+    return SEAMLESS * halved + STILL_BENT * bent <= cut
 
 
 def _groups(cells: Keys, parts: int, numbers: Numbering) -> Keys:

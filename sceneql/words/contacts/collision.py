@@ -93,7 +93,10 @@ class Collision(Contact):
     solids do so by the barrier, too, and with one another and with objects there: by triangles of up to 3 sides of the
     skins, of a ball by 1,280 that lie within half a hundredth of its radius. What they keep apart is no smaller than
     the gap; friction acts on both sides of it, and so may turn them a little by that arm. `points`, `normals` and
-    `forces` do not tell of the barrier, and bodies that ties hold do not collide with elastic solids.
+    `forces` do not tell of the barrier, and bodies that ties hold do not collide with elastic solids. Cloth and
+    `solid` nets of springs beside elastic solids have it on both sides of their faces, also against themselves, as in
+    `touch: {collision: {between: [jelly, sheet, floor], friction: 0.3}}` of an `elastic` jelly on a `cloth`: the gap
+    is then all the thickness that counts. What tears, ropes and particles are refused there.
 
     Skins in a flow (`membrane`) have no mass: within the `gap`, a cell by default, forces push them off objects,
     masses, rigid bodies, one another and themselves (what is nearer at the start than two gaps is not pushed apart),
@@ -179,8 +182,7 @@ class Collision(Contact):
             (EXACT if exact else LOCAL,)
         )  # the island's largest kernels, in parallel with those for the objects, which compile here
 
-        written = {ref.name: ref for ref in self.between or ()}
-        touched = [written.get(ref.name, ref) for ref in others]
+        touched = self._written(others)
         objects = surfaces(touched, assembly, layout.HEAD)
         if exact:
             compile_beside(one for one in lazy_kernels.modules() if one.startswith(f"{SHAPES}."))  # for every gap
@@ -221,11 +223,14 @@ class Collision(Contact):
         if self.mode == "barrier" and self.restitution.span is not None:
             yield Problem(NO_RESTITUTION, ("restitution",), at_key=True)
         if self.mode == "barrier" and self.rolling.span is not None:
-            yield Problem(
-                "mode barrier has no moment against rolling: modes exact and local have", ("rolling",), at_key=True
-            )
+            text = "mode barrier has no moment against rolling: modes exact and local have"
+            yield Problem(text, ("rolling",), at_key=True)
         if self.mode in ("exact", "local") and self.gap is not None:
             yield Problem(f"mode {self.mode} has no gap: the mode barrier of elastic solids has", ("gap",), at_key=True)
+
+    def keeps_apart(self, models: Mapping[str, Model]) -> bool:
+        """Beside elastic solids."""
+        return self.mode in ("auto", "barrier") and any(model.has_skin for model in models.values())
 
     def refusals(self, models: Mapping[str, Model]) -> Iterator[Diagnostic]:
         """Masses beside elastic solids; a moment against rolling that nothing would have; what skins in flows lack."""
@@ -238,12 +243,14 @@ class Collision(Contact):
                 written = next((ref.span for ref in self.between or () if ref.name == solid), None)
                 yield Diagnostic("no-collider", message, written, "name under `between` what may touch, without it")
             models = {name: model for name, model in models.items() if not model.carried}
-        soft = self.mode in ("auto", "barrier") and any(model.has_skin for model in models.values())
-        hard = next((name for name, model in models.items() if not (model.has_skin or model.turns)), None)
+        soft = self.keeps_apart(models)
+        whys = {name: "" if model.has_skin or model.turns else model.faceless() for name, model in models.items()}
+        hard = next((name for name, why in whys.items() if why), None)
         if soft and hard is not None:
-            message = f"'{hard}' does not collide together with elastic solids yet"
+            from sceneql.contacts.barrier.refused import beside_solids
+
             written = next((ref.span for ref in self.between or () if ref.name == hard), None)
-            yield Diagnostic("no-collider", message, written, "name under `between` what may touch, without it")
+            yield beside_solids(hard, whys[hard], written)
         if soft and self.restitution.span is not None:
             yield Diagnostic("no-restitution", NO_RESTITUTION, self.restitution.span, NODES)
         if self.rolling.span is None or not models:
@@ -273,16 +280,18 @@ class Collision(Contact):
     def assemble_skins(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> bool:
-        """Add the barrier between elastic solids, rigid bodies and objects, unless the script asks for masses that
-        collide."""
+        """Add the barrier between all of these, unless the script asks for masses that collide."""
         if self.mode in ("exact", "local"):
             return False
         from sceneql.contacts.barrier.barrier_contact import assemble
 
-        written = {ref.name: ref for ref in self.between or ()}
-        touched = [written.get(ref.name, ref) for ref in others]
-        assembly.remember(*assemble(assembly, everyone, touched, self.friction, self.gap))
+        assembly.remember(*assemble(assembly, everyone, self._written(others), self.friction, self.gap))
         return True
+
+    def _written(self, others: Sequence[Ref]) -> list[Ref]:
+        """Objects, with their places in the script."""
+        written = {ref.name: ref for ref in self.between or ()}
+        return [written.get(ref.name, ref) for ref in others]
 
     def assemble_carried(
         self,
@@ -303,8 +312,7 @@ class Collision(Contact):
             if getattr(self, what).span is not None:
                 text = f"masses of '{carried[0].model}' move as their flow does, and have no {what}"
                 raise ScriptError([Diagnostic("no-restitution", text, getattr(self, what).span, "leave it out")])
-        written = {ref.name: ref for ref in self.between or ()}
-        touched = [written.get(ref.name, ref) for ref in others]
+        touched = self._written(others)
         # A skin that could not be made has its own diagnostic.
         models: list[tuple[str, Any]] = [(skin, assembly.object(Ref(skin))) for skin in skins]
         made = [(skin, model.made) for skin, model in models if assembly.membrane_of(skin) is not None]
@@ -327,8 +335,7 @@ class Collision(Contact):
         if self.mode == "barrier":
             message = "mode `barrier` is that of elastic solids, and rigid bodies are none"
             raise ScriptError([Diagnostic("no-collider", message, assembly.line(), "leave the mode out")])
-        written = {ref.name: ref for ref in self.between or ()}
-        touched = [written.get(ref.name, ref) for ref in others]
+        touched = self._written(others)
         rigid = [bodies for bodies in everyone if bodies.turning is not None]
         points = [bodies for bodies in everyone if bodies.turning is None]
         assembly.contact_why = "asked for by the script"

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from sceneql.kinds import Contact, DrawnRef, Gives, Model, Ref, Scalar, field
+from sceneql.contacts import tallies
+from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Model, Problem, Ref, Scalar, field
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
@@ -41,6 +42,10 @@ class MutualCollision(Contact):
     counts these pairs. Its layers cannot pass through each other where the thickness is no less than the side of a
     cell. Steps that a tolerance chooses are at most 1/240 s there; masses that are not elastic rest where they approach
     slower than what presses them gives in two.
+
+    Mode `barrier` is that of `collision` with elastic solids, for cloth and solids of springs alone: their faces are
+    pushed off themselves, one another and the objects within the `gap`, and nothing passes in any step of any solver.
+    It has no restitution, the radius of masses does not count, and no other contact may move these masses.
     """
 
     mutual: ClassVar[bool] = True
@@ -53,16 +58,33 @@ class MutualCollision(Contact):
     )
     restitution: Scalar = field("Normal speed after an impact as a part of that before.", "0.5", at_least=0, at_most=1)
     friction: Scalar = field("Coulomb's coefficient of friction.", "0", at_least=0)
-    mode: Literal["auto", "exact", "local"] = field("How impacts are found.", "auto")
+    mode: Literal["auto", "exact", "local", "barrier"] = field("How impacts are found.", "auto")
+    gap: FixedLength | None = field(
+        "Distance from which on mode `barrier` pushes faces off; by default a twentieth of their mean side.",
+        None,
+        above=0,
+    )
 
     def ties(self) -> tuple[Ref, ...]:
         """The models and objects of `between`."""
         return self.between or ()
 
+    def problems(self) -> Iterator[Problem]:
+        """A restitution where there is none, and a gap that nothing has."""
+        if self.mode == "barrier" and self.restitution.span is not None:
+            yield Problem("mode barrier has no restitution: springs throw off", ("restitution",), at_key=True)
+        if self.mode != "barrier" and self.gap is not None:
+            yield Problem("spheres have no gap: mode barrier has", ("gap",), at_key=True)
+
+    def keeps_apart(self, models: Mapping[str, Model]) -> bool:
+        """In mode `barrier`."""
+        return self.mode == "barrier"
+
     def refusals(self, models: Mapping[str, Model]) -> Iterator[Diagnostic]:
-        """Rigid bodies, which turn: `collision` is their word, with the names to write."""
+        """Rigid bodies, which turn: `collision` is their word, with the names to write; and what a barrier lacks."""
         rigid = [name for name, model in models.items() if model.turns]
         if not rigid:
+            yield from self._without_faces(models)
             return
         message = f"'{rigid[0]}' is rigid, and `mutual_collision` is of masses, which do not turn"
         touched = dict.fromkeys(rigid + [ref.name for ref in self.between or () if ref.name not in models])
@@ -71,6 +93,20 @@ class MutualCollision(Contact):
             help += " for what is rigid, and name the masses alone here, under `between`"
         written = next((ref.span for ref in self.between or () if ref.name == rigid[0]), None)
         yield Diagnostic("no-collider", message, written, help)
+
+    def _without_faces(self, models: Mapping[str, Model]) -> Iterator[Diagnostic]:
+        """The first model of mode `barrier` that is no net with faces."""
+        whys = {name: model.faceless() for name, model in models.items()} if self.mode == "barrier" else {}
+        hard = next((name for name, why in whys.items() if why), None)
+        if hard is not None:
+            from sceneql.contacts.barrier.refused import beside_solids
+
+            written = next((ref.span for ref in self.between or () if ref.name == hard), None)
+            if models[hard].has_skin:
+                text = f"'{hard}' is elastic, and has a barrier in `collision`"
+                yield Diagnostic("no-collider", text, written, "write `collision` with the same names")
+            else:
+                yield beside_solids(hard, whys[hard], written, "in mode `barrier`")
 
     def assemble_carried(
         self,
@@ -91,6 +127,13 @@ class MutualCollision(Contact):
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> None:
         """Add the contacts of all pairs. Raises ScriptError for masses that start inside each other."""
+        if self.mode == "barrier":
+            from sceneql.contacts.barrier import barrier_contact
+
+            touched = [Ref(ref.name, assembly.line()) for ref in others]
+            told = barrier_contact.assemble(assembly, everyone, touched, self.friction, self.gap)
+            assembly.remember(*told)
+            return
         import numpy as np
 
         from sceneql.bodies.neighbors import table
@@ -142,11 +185,15 @@ class MutualCollision(Contact):
         assembly.remember(tally)
 
     def read(self, output: str, state: ModelState) -> Any:
-        """The number of impacts."""
+        """The number of impacts; a barrier has none."""
+        if self.mode == "barrier":
+            return 0.0
         return float(sum(state.floats[at] for at in state.ints))
 
     def remark(self, state: ModelState) -> str:
-        """How many pairs do not collide, and why."""
+        """How many pairs do not collide, and why; the gap of a barrier."""
+        if self.mode == "barrier":
+            return tallies.remark(state)
         springs, overlaps = (int(sum(state.floats[at + k] for at in state.ints)) for k in (SPRINGS, OVERLAPS))
         if not springs + overlaps:
             return ""

@@ -58,6 +58,10 @@ class Cloth(SpringModel):
         yield from self._sheet().problems()
         yield from pin_problems(self.pins, (*EDGES, *CORNERS), self.mass_count())
 
+    def faceless(self) -> str:
+        """Of one that tears, whose faces would open."""
+        return "tears" if self.tear is not None else ""
+
     def mass_count(self) -> int:
         """Number of masses."""
         return self._sheet().mass_count()

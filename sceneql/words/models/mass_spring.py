@@ -121,6 +121,12 @@ class MassSpring(SpringModel):
                     "unread-value", text, place, f"leave out one of the two; a spring's own is `springs.0.{name}`"
                 )
 
+    def faceless(self) -> str:
+        """Of all nets but a cloth and a solid, and of what tears."""
+        if self.cloth is None and self.solid is None:
+            return super().faceless()
+        return "tears" if self.tear is not None else ""
+
     def mass_count(self) -> int | None:
         """Number of masses; None of a solid."""
         shape = self.lattice or self.cloth or self.rope

@@ -16,17 +16,20 @@ if TYPE_CHECKING:
 class Gear(Joint):
     """Two wheels turn by as many teeth, in opposite senses about one axis, as if they met outside.
 
-    Each turns about an axis that keeps its direction in the world: a `hinge` on the world holds it there. The axle of a
-    planet's wheel may go round on an arm about that axis (`between: [train.planet, train.arm]` in its hinge): the
-    wheels turn against the line from axle to axle. An axle is the hinge nearest to the wheel's center of mass, or that
-    center. The force is that of the teeth where they meet, across this line.
+    Each turns about the axis of its hinge. On the world a `hinge` keeps the axis' direction. On a housing that moves or
+    tumbles itself (`between: [clock.wheel, clock.case]` in its hinge) the axes go with it, and the wheels turn against
+    it: it need not be named here, and a free one keeps its momentum, angular momentum and energy. The axle of a
+    planet's wheel may go round on an arm (`between: [train.planet, train.arm]`). Wheels of parallel axes turn against
+    the line from axle to axle, where an axle is the hinge nearest to the wheel's center of mass, or that center; their
+    force is that of the teeth where they meet, across this line. Of other axes (bevel wheels) it is a torque alone, and
+    on a housing or an arm each counts against the axis of the other; a hinge or a weld must hold each to its own.
     """
 
     gives: ClassVar[Mapping[str, Gives]] = FORCES
 
     teeth: tuple[int, int] = field("Teeth of the first and of the second.", at_least=1)
-    axis: Direction = field("Axis of the first.", "0 0 1")
-    other_axis: Direction | None = field("Axis of the second; by default that of the first.", None)
+    axis: Direction = field("Axis of the first at the start.", "0 0 1")
+    other_axis: Direction | None = field("Axis of the second at the start; by default that of the first.", None)
     inner: bool = field("The smaller runs inside the larger: both turn in one sense.", False)
 
     def problems(self) -> Iterator[Problem]:
@@ -45,5 +48,7 @@ class Gear(Joint):
             start, _ = across(axis)
             vectors += [(axis[0], axis[1], axis[2]), (start[0], start[1], start[2]), side.direction(start)]
         one, other = self.teeth
-        no_line = 3 * [(0.0, 0.0, 0.0)]  # it is told once all hinges are known (bodies/rigid/wheels.py)
+        no_line = 3 * [
+            (0.0, 0.0, 0.0)
+        ]  # told, and whether it is carried, once all hinges are known (bodies/gears/wheels.py)
         return [TieRow("gear", (*vectors, *no_line), (one, -other if self.inner else other, 0.0))]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.bodies.elements.laws.law import MATERIAL, Law, Ratio
 from sceneql.kinds import field
@@ -18,6 +19,9 @@ class MooneyRivlin(Law):
     by a than Lame's.
     """
 
+    said_by: ClassVar[Mapping[str, str]] = {
+        "second": "it is a share of the shear modulus, from 0 to 1 and without a unit: write `second: 0.2`"
+    }
     kernels = "sceneql.bodies.elements.laws.mooney_rivlin_kernels"
 
     second: Ratio | None = field(f"What part b is of the shear modulus, 0 to 1, {MATERIAL}; by default 0.2.", None)

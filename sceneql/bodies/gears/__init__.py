@@ -1,0 +1,1 @@
+"""Wheels that mesh."""
