@@ -12,7 +12,7 @@ from sceneql.flows.schemes import additive
 from sceneql.kinds.stable_step import stable_step
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.skins.elasticity import ALONG
-from sceneql.skins.skin_layout import COUNT, FLOW, HELD_AT, LENGTHS_AT, POSITION_AT, STIFFNESS_AT
+from sceneql.skins.skin_layout import COUNT, FLOW, HELD_AT, POSITION_AT, STIFFNESS_AT
 from sceneql.skins.stiff.stiff_choice_kernels import BOUND, CHOICE, COST, LATER, WARM, WINDOW
 from sceneql.skins.stiff.stiff_step_kernels import ROWS, STATE
 
@@ -29,7 +29,7 @@ LARGEST = 3000
 """Sides of all such skins: their matrix then takes 72 MB."""
 SOLVES, PAIR, FACTOR = 5.0, 0.3, 700.0
 """Explicit steps that an implicit one costs: by its solves of the fluid, by pairs of sides over cells, more by as many
-sides as have its factor cost as much (tests/bench/bench_skins.py cost)."""
+sides as have its factor cost as much (tests/bench/bench_skins.py stiff)."""
 
 
 class Lines(NamedTuple):
@@ -58,7 +58,7 @@ class Lines(NamedTuple):
         stretch = max((float(floats[ints[STIFFNESS_AT]]) for ints in self.skins), default=0.0) / flow.spacing[2]
         if stretch == 0.0:
             return float("inf")
-        turn = (ALONG * stretch / (flow.density * cell**3)) ** 0.5
+        turn = float((ALONG * stretch / (flow.density * cell**3)) ** 0.5)
         decay = flow.viscosity / flow.density * axes / cell**2
         size = max(turn, decay)
         return stable_step(lambda step: additive.growth(decay / size, turn / size, step)) / size
@@ -124,7 +124,8 @@ def prepare_choice(system: System, stepper: Stepper) -> Prepared:
     """Those of stiff_choice_kernels.step."""
     made, flow = prepare(system, stepper), system.fields.flow
     found = lines_of(system.stiff, flow)
-    assert flow is not None and found is not None
+    assert flow is not None
+    assert found is not None
     choice = np.zeros(CHOICE)
     choice[BOUND], choice[COST] = found.bound(flow, system.floats), found.cost(flow)
     choice[LATER] = 0.5 * (WARM + WINDOW) * choice[COST]
@@ -138,6 +139,8 @@ def remark(found: Lines, flow: Flow, floats: Floats, step: float | None) -> str:
     sides, bound = f"the tensions of {found.sides} sides of skins", found.bound(flow, floats)
     if step is None:
         cost = f"{found.cost(flow):.2g} times as long, which one with implicit tensions costs"
-        return f"with {sides} explicit up to their bound of {bound:.3g} s, and implicit where the flow's steps are {cost}"
+        return (
+            f"with {sides} explicit up to their bound of {bound:.3g} s, and implicit where the flow's steps are {cost}"
+        )
     way = "implicit, as its step is beyond" if step > bound else "explicit, as its step is within"
     return f"with {sides} {way} their bound of {bound:.3g} s"

@@ -74,8 +74,8 @@ class Membrane(Model):
     In a flat flow it is the outline of an object in the plane z = 0, in a deep one its surface in triangles, with
     vertices evenly apart that move as the fluid does. What it holds stays: the fluid is incompressible, and after each
     step one number moves all vertices along the slope of the volume, X += s dV/dX, so that what is drawn keeps it
-    exactly; `volume_correction` sums what that put back. Stiff flat skins of springs take long steps by `ark3: {skins:
-    implicit}`.
+    exactly; `volume_correction` sums what that put back. Stiff flat skins of springs take long steps by `ark3`,
+    which `auto` takes.
 
     With a `filling` it holds a fluid other than that of its flow: treacle in air, which `gravity` weighs. Masses in
     cells are what the drawn skin cuts off them, exactly; what crosses a side of a cell takes its momentum along.
