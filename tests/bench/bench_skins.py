@@ -279,7 +279,7 @@ def fall(cells: str) -> None:
 
 
 def stiff(stretch: str = "1e5") -> None:
-    """An ellipse of springs in a vortex of 1 m/s to 1 s, by explicit and implicit skins and by `auto`: time, places at the end."""
+    """An ellipse of springs in a vortex of 1 m/s to 1 s: time and places, skins explicit, by `auto` and implicit."""
     wave, ends = "cos(2*pi*x/3)*cos(2*pi*y/3)*0.477464829275686", []
     skin = f"of: egg, law: {{springs: {{stretch: {stretch} N/m}}}}, spacing: 3 m/64/2"
     steps = ("step: 20 ms, ", "step: 10 ms, ", "step: 5 ms, ", "")
