@@ -81,3 +81,24 @@ def test_the_step_of_implicit_skins_is_told_to_be_stable(tmp_path):
         turn = np.array([[0.0, 2e4], [-2e4, -1.0]])
         stable[skins] = air.tasks["main"].kind.growth(turn, None, 0.01) <= 1.0, not list(air.graph.warnings)
     assert stable == {"explicit": (False, False), "implicit": (True, True)}
+
+
+def test_skins_are_implicit_beyond_what_they_bear_where_that_is_worth_it(tmp_path):
+    """Those of `auto`: a stiff skin takes far fewer steps to the same places, a soft one the explicit steps."""
+    found = {}
+    for stretch in (4, 1e5):
+        for solver in ("{ark3: {skins: explicit}}", "{auto: {}}"):
+            air = ballooned(tmp_path, law_of(stretch), solver=solver, end=0.4, initial=SHEAR, spacing="1/32 m").at(0.4)
+            found[stretch, solver[1:5]] = air.run.march.statistics.steps, air.read("positions", "balloon")
+    assert found[4, "auto"][0] == found[4, "ark3"][0]
+    assert found[1e5, "auto"][0] < found[1e5, "ark3"][0] / 2
+    assert found[1e5, "auto"][1] == pytest.approx(found[1e5, "ark3"][1], abs=2e-4)
+
+
+def test_a_fixed_step_beyond_the_bound_has_implicit_skins(tmp_path):
+    for step, way in (("0.1 ms", "within"), ("10 ms", "beyond")):
+        air = ballooned(tmp_path, law_of(1e4), solver=f"{{ark3: {{step: {step}}}}}", spacing="1/32 m")
+        assert not list(air.graph.warnings)
+        assert way in air.run.methods.remark
+    air.at(0.02)
+    assert air.read("stretch", "balloon") == pytest.approx(1.0, abs=1e-3)

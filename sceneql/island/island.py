@@ -170,10 +170,10 @@ class IslandAssembly(Offered):
     @property
     def on_grids(self) -> Fields:
         """The fields and the flow of the island, and whether it consists of these alone."""
-        alone = bool(self._ranges) and len(self._ranges) == len(self._grids) + len(self._flows)
-        alone = alone and not self._pairs and not self.changed_between_steps
-        elements = 0 if self.changed_between_steps else self.on_elements
-        return Fields(tuple(self._grids), next(iter(self._flows.values()), None), alone, elements)
+        still, flow = not self.changed_between_steps, next(iter(self._flows.values()), None)
+        alone = still and not self._pairs and 0 < len(self._ranges) == len(self._grids) + len(self._flows)
+        stiff = tuple((one.kernels[0], one.ints) for stage in STAGES for one in self._terms[stage] if one.stiff)
+        return Fields(tuple(self._grids), flow, alone, self.on_elements if still else 0, stiff)
 
     @property
     def changed_between_steps(self) -> bool:
@@ -357,7 +357,7 @@ class IslandAssembly(Offered):
             events=tuple((block.pairs, Origin(block.part, block.span), block.help) for block in events),
             gives_way=self.gives_way,
             damped=any(block.damped for block in blocks[1:first_exact]),
-            stiff=tuple((block.kernels[0], block.ints) for block in blocks[1:first_exact] if block.stiff),
+            stiff=self.on_grids.stiff,
         )
 
     def _energies(self, groups: list[tuple[tuple[str, ...], int]], terms: list[Block]) -> tuple[str, ...] | None:

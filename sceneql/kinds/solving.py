@@ -86,6 +86,10 @@ class Solver(Kind):
         word = type(self).__module__.rpartition(".")[2]
         raise Unsuitable(f"`{word}` does not tell its growth, so nothing is known of its stable step")
 
+    def solves_tensions(self) -> bool:
+        """Whether it marches the tensions of flat skins of springs implicitly beyond their bound."""
+        return False
+
     def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
         """Growth factor of a fixed step on x'' = -frequency^2 x - (decay - i turn) x', in plain Python for `check`.
 

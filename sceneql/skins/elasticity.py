@@ -9,6 +9,10 @@ if TYPE_CHECKING:
     from sceneql.system import Flow
 
 
+ACROSS, ALONG, BENT = 0.55, 0.2, 4.3
+"""Factors of tension, of stretch, and of bending over the cell's square in Membrane.largest_tension."""
+
+
 @dataclass(frozen=True, slots=True)
 class Elasticity:
     """Elastic constants of a skin; any of them may be 0, and several may act at once."""

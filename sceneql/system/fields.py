@@ -117,6 +117,8 @@ class Fields:
     """Whether the island consists of these fields alone, and nothing changes them between steps."""
     on_elements: int = 0
     """Number of unknowns of finite element fields, where the island consists of these alone; else 0."""
+    stiff: tuple[tuple[str, Any], ...] = ()
+    """(kernel, integers) of terms that additive methods may march implicitly (System.stiff)."""
 
     @property
     def single(self) -> Grid | None:

@@ -49,6 +49,8 @@ def warn_of_steps(
         for name, modes in _modes(island, tasks, end):
             entry = script.sections.get(tasks[name].family, {}).get(name)
             for fastest in modes:
+                if fastest.tension and cast(Solver, solver.kind).solves_tensions():
+                    continue
                 wrong = _wrong(growth, stable, solver.word, step, fastest, end, damped)
                 if wrong is not None:
                     message, smaller = wrong

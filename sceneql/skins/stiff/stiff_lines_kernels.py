@@ -156,6 +156,13 @@ def hold(tensions, floats, lines):
             held[1 + v] = tensions[line[FIRST] + v]
 
 
+@lean(types.void(A, I))
+def release(floats, lines):
+    """Have the terms of lines pull by the lengths of sides again."""
+    for number in range(lines[LINES]):
+        floats[lines[HEAD + LINE * number + HELD_AT]] = 0.0
+
+
 @lean(types.float64(A, A, A, I))
 def apart(x, y, floats, lines):
     """How far vertices are from each other at most, in parts of sides; not finite where one is nowhere."""

@@ -1,59 +1,146 @@
-"""Preparation of an additive method in which stiff skins are implicit, too."""
+"""Preparation of an additive method in which stiff skins are implicit, too, where that is asked for or worth it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from sceneql.flows.layout import LED
 from sceneql.flows.schemes import additive
+from sceneql.kinds.stable_step import stable_step
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.skins.skin_layout import COUNT, FLOW, HELD_AT, POSITION_AT
+from sceneql.skins.elasticity import ALONG
+from sceneql.skins.skin_layout import COUNT, FLOW, HELD_AT, POSITION_AT, STIFFNESS_AT
+from sceneql.skins.stiff.stiff_choice_kernels import BOUND, CHOICE, COST, LATER, WARM, WINDOW
 from sceneql.skins.stiff.stiff_step_kernels import ROWS, STATE
 
 if TYPE_CHECKING:
-    from sceneql.island.system import System
-    from sceneql.system import Prepared, Stepper
+    from collections.abc import Sequence
 
+    from sceneql.frame import Floats
+    from sceneql.island.system import System
+    from sceneql.system import Flow, Prepared, Stepper
+
+KERNELS = "sceneql.skins.stiff"
 TENSION, PUSH = "sceneql.skins.closed_line_kernels:tension", "sceneql.skins.spline_kernels:push"
 LARGEST = 3000
 """Sides of all such skins: their matrix then takes 72 MB."""
+SOLVES, PAIR, FACTOR = 5.0, 0.3, 700.0
+"""Explicit steps that an implicit one costs: by its solves of the fluid, by pairs of sides over cells, more by as many
+sides as have its factor cost as much (tests/bench/bench_skins.py stiff)."""
 
 
-def stepper(tolerance: float, step: float | None, largest: float | None) -> Stepper:
-    """That of ark3, with skins implicit."""
-    made = additive.stepper(tolerance, step, largest)
+class Lines(NamedTuple):
+    """The flat skins of springs in a flow."""
+
+    skins: Sequence[Any]
+    """The integers of their tensions."""
+    ties: Sequence[Any]
+    """Those of what ties each to the flow."""
+    why: str
+    """Why they cannot be implicit; empty where they can."""
+
+    @property
+    def sides(self) -> int:
+        """How many sides all of them have."""
+        return sum(int(ints[COUNT]) for ints in self.skins)
+
+    def cost(self, flow: Flow) -> float:
+        """Explicit steps that a step with implicit skins costs, by counts of operations."""
+        cells = float(np.prod(flow.cells.shape))
+        return SOLVES + PAIR * self.sides**2 / cells * (1.0 + self.sides / FACTOR)
+
+    def bound(self, flow: Flow, floats: Floats) -> float:
+        """The longest step [s] that the explicit method bears by their tensions; infinite without skins."""
+        cell, axes = min(flow.spacing[:2]), 2
+        stretch = max((float(floats[ints[STIFFNESS_AT]]) for ints in self.skins), default=0.0) / flow.spacing[2]
+        if stretch == 0.0:
+            return float("inf")
+        turn = float((ALONG * stretch / (flow.density * cell**3)) ** 0.5)
+        decay = flow.viscosity / flow.density * axes / cell**2
+        size = max(turn, decay)
+        return stable_step(lambda step: additive.growth(decay / size, turn / size, step)) / size
+
+
+def lines_of(stiff: Sequence[tuple[str, Any]], flow: Flow | None) -> Lines | None:
+    """The flat skins of springs among terms (System.stiff) of an island; None where no skin is in a flow of one fluid.
+
+    A skin of another law, or in a deep flow, has no such term, and is explicit.
+    """
+    ties = {int(ints[POSITION_AT]): ints for kernel, ints in stiff if kernel == PUSH}
+    skins = [ints for kernel, ints in stiff if kernel == TENSION and int(ints[POSITION_AT]) in ties]
+    if not ties or flow is None:
+        return None
+    sides, why = sum(int(ints[COUNT]) for ints in skins), ""
+    if not skins:
+        why = "no flat skin of springs, which alone can be implicit"
+    elif flow.ints[LED] > 0:
+        why = "implicit skins go with no solids that move"
+    elif sides > LARGEST:
+        why = f"implicit skins have {sides} sides, more than {LARGEST}"
+    return Lines(skins, [ties[int(ints[POSITION_AT])] for ints in skins], why)
+
+
+def implicit(made: Stepper) -> Stepper:
+    """``made``, that of the additive pair, with skins implicit."""
+    return _stepped(made, "stiff_step_kernels", "prepare")
+
+
+def chosen(made: Stepper) -> Stepper:
+    """``made``, that of the additive pair by a tolerance, with skins implicit where that is worth it."""
+    return _stepped(made, "stiff_choice_kernels", "prepare_choice")
+
+
+def _stepped(made: Stepper, kernels: str, prepare: str) -> Stepper:
     return replace(
         made,
-        method=replace(made.method, step="sceneql.skins.stiff.stiff_step_kernels:step"),
-        needs=replace(made.needs, prepare="sceneql.skins.stiff.stiff_step:prepare"),
+        method=replace(made.method, step=f"{KERNELS}.{kernels}:step"),
+        needs=replace(made.needs, prepare=f"{KERNELS}.stiff_step:{prepare}"),
     )
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
     """Settings, numbers and scratch of stiff_step_kernels.step. Raises ScriptError where no skin can be implicit."""
     flat = additive.prepare(system, stepper)
-    flow, (_, _, part, spans) = system.fields.flow, system.ranges[0]
-    ties = {int(ints[POSITION_AT]): ints for kernel, ints in system.stiff if kernel == PUSH}
-    skins = [ints for kernel, ints in system.stiff if kernel == TENSION and int(ints[POSITION_AT]) in ties]
-    sides = sum(int(ints[COUNT]) for ints in skins)
-    why = ""
-    if not skins:
-        why = f"'{part}' has no flat skin of springs, which alone can be implicit"
-    elif flow is not None and flow.ints[LED] > 0:
-        why = "implicit skins go with no solids that move"
-    elif sides > LARGEST:
-        why = f"implicit skins have {sides} sides, more than {LARGEST}"
-    if why:
+    _, _, part, spans = system.ranges[0]
+    found = lines_of(system.stiff, system.fields.flow)
+    why = f"'{part}' has no skin" if found is None else found.why
+    if found is None or why:
+        why = f"'{part}' has {why}" if why.startswith("no ") else why
         raise ScriptError([Diagnostic("invalid", why, spans[0], "write `skins: explicit`")])
-    lines, first = [len(skins), sides], 0
-    for ints in skins:
-        tie = ties[int(ints[POSITION_AT])]
+    lines, first, sides = [len(found.skins), found.sides], 0, found.sides
+    for ints, tie in zip(found.skins, found.ties, strict=True):
         lines += [*(int(one) for one in ints[: HELD_AT + 1]), *(int(one) for one in tie[: FLOW + 1]), first]
         first += int(ints[COUNT])
-    numbers = np.array([*flat.numbers, *lines, len(flat.numbers)], dtype=np.int64)
+    numbers = np.array([*flat.numbers, *lines, len(flat.settings), len(flat.numbers)], dtype=np.int64)
     work = flat.work + STATE + (ROWS + sides) * sides + 2 * len(system.y)
     text = f"{flat.text}; the tensions of {sides} sides of skins implicit, by Newton's method"
     return replace(flat, numbers=numbers, work=work, text=text)
+
+
+def prepare_choice(system: System, stepper: Stepper) -> Prepared:
+    """Those of stiff_choice_kernels.step."""
+    made, flow = prepare(system, stepper), system.fields.flow
+    found = lines_of(system.stiff, flow)
+    assert flow is not None
+    assert found is not None
+    choice = np.zeros(CHOICE)
+    choice[BOUND], choice[COST] = found.bound(flow, system.floats), found.cost(flow)
+    choice[LATER] = 0.5 * (WARM + WINDOW) * choice[COST]
+    return replace(made, settings=np.append(made.settings, choice))
+
+
+def remark(found: Lines, flow: Flow, floats: Floats, step: float | None) -> str:
+    """How skins of an island are marched by default, and why, for `explain`; ``step``: one of fixed length [s]."""
+    if found.why:
+        return f"with skins explicit: there is {found.why}" if found.why.startswith("no ") else found.why
+    sides, bound = f"the tensions of {found.sides} sides of skins", found.bound(flow, floats)
+    if step is None:
+        cost = f"{found.cost(flow):.2g} times as long, which one with implicit tensions costs"
+        return (
+            f"with {sides} explicit up to their bound of {bound:.3g} s, and implicit where the flow's steps are {cost}"
+        )
+    way = "implicit, as its step is beyond" if step > bound else "explicit, as its step is within"
+    return f"with {sides} {way} their bound of {bound:.3g} s"

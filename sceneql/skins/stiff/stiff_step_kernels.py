@@ -71,10 +71,11 @@ SEARCHES, ENOUGH, FEW = 40, 0.03, 3
 BAD, QUICK = 12, 0.02
 """Iterations with a factor just found by the answer to one force, beyond which that is poor; the time it takes, in
 parts of that by the answer to each tension."""
-HAS, WORN, BEGIN, BEGUN, POOR, ROOM = range(6)
+HAS, WORN, BEGIN, BEGUN, POOR, ANEW, ROOM = range(7)
 STATE = ROOM + 2 * PAIRS
 """Of what goes on between steps: 1 where there is a factor; iterations beyond FEW since it was found; the start of the
-latest step [s]; 1 after a step has begun; 1 where the answer to one force makes a poor factor."""
+latest step [s]; 1 after a step has begun; 1 where the answer to one force makes a poor factor; 1 where
+tensions begin by the law, whatever they were."""
 ROWS = 15 + MATRIX_ROOM
 """Numbers a side besides the matrix."""
 
@@ -229,12 +230,12 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     floats[one[SKIP]] = 1.0
     solved, goes_on = True, settings[latest] == t and same(y0, end)
     settings[latest - 1] = 1.0 if goes_on else 0.0
-    if settings[latest] == t and (goes_on or floats[channels.SETTLED] != 0.0):
+    if state[ANEW] == 0.0 and settings[latest] == t and (goes_on or floats[channels.SETTLED] != 0.0):
         for k in range(sides):
             at_start[k] = at_end[k]
     elif not (state[BEGUN] == 1.0 and state[BEGIN] == t):
         by_law(y0, at_start, floats, lines)
-    state[BEGUN], state[BEGIN] = 1.0, t
+    state[BEGUN], state[BEGIN], state[ANEW] = 1.0, t, 0.0
     for k in range(sides):
         tensions[k] = at_start[k]
     hold(tensions, floats, lines)

@@ -84,8 +84,12 @@ class Immersion(Force):
         for name, model in models.items():
             if model.carried:
                 inside = (model.fluid() or (flow.density, 0.0))[0]
-                turn = (model.largest_tension(cell) / (0.5 * (flow.density + inside) * cell**3)) ** 0.5
-                yield Oscillation(0.0, decay, f"the skin '{name}' in cells of {cell:g} m", ("on",), turn)
+                what, weight = f"the skin '{name}' in cells of {cell:g} m", 0.5 * (flow.density + inside) * cell**3
+                along = model.implicit_tension() if axes == 2 else 0.0
+                across = model.largest_tension(cell, along=along == 0.0)
+                for tension, solved in ((along, True), (across, False)):
+                    if tension > 0.0:
+                        yield Oscillation(0.0, decay, what, ("on",), (tension / weight) ** 0.5, tension=solved)
                 continue
             turn = swing(name, model, flow.density, cell, axes, flow.depth if axes == 2 else 1.0, scene)
             yield Oscillation(0.0, decay, f"the springs of '{name}' in cells of {cell:g} m", ("on",), turn)

@@ -12,6 +12,7 @@ from sceneql.kinds import Gives, Model, Problem, Quantity, Record, Ref, field, q
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
+from sceneql.skins.elasticity import ACROSS, ALONG, BENT
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -22,10 +23,6 @@ if TYPE_CHECKING:
     from sceneql.skins.deep import Sheet
     from sceneql.skins.flat import Line
     from sceneql.system import Assembly, ModelState
-
-
-ACROSS, ALONG, BENT = 0.55, 0.2, 4.3
-"""Factors of tension, of stretch, and of bending over the cell's square in Membrane.largest_tension."""
 
 
 class Springs(Record):
@@ -77,8 +74,8 @@ class Membrane(Model):
     In a flat flow it is the outline of an object in the plane z = 0, in a deep one its surface in triangles, with
     vertices evenly apart that move as the fluid does. What it holds stays: the fluid is incompressible, and after each
     step one number moves all vertices along the slope of the volume, X += s dV/dX, so that what is drawn keeps it
-    exactly; `volume_correction` sums what that put back. Stiff flat skins of springs take long steps by `ark3: {skins:
-    implicit}`.
+    exactly; `volume_correction` sums what that put back. Stiff flat skins of springs take long steps by `ark3`,
+    which `auto` takes.
 
     With a `filling` it holds a fluid other than that of its flow: treacle in air, which `gravity` weighs. Masses in
     cells are what the drawn skin cuts off them, exactly; what crosses a side of a cell takes its momentum along.
@@ -257,11 +254,16 @@ class Membrane(Model):
             return np.array(skin.position_at + 3 * skin.count)
         return rows if output == "positions" else None
 
-    def largest_tension(self, cell: float) -> float:
+    def implicit_tension(self) -> float:
+        """As largest_tension, of the springs of a flat skin, whose tensions a solver may solve for [N/m]."""
+        return 0.0 if self.law.springs is None else ALONG * self.law.springs.stretch
+
+    def largest_tension(self, cell: float, along: bool = True) -> float:
         """Times k^3/density, k one over the side of a flow's ``cell``, how fast its waves turn, squared [N/m].
 
         That of waves across it follows from its tension and its bending, of those along it from its stretch, all as the
-        splines leave them (the eigenvalues of ellipses and bars in flows, tests/test_membranes.py).
+        splines leave them (the eigenvalues of ellipses and bars in flows, tests/test_membranes.py). ``along``: whether
+        the latter count.
         """
         stretch = 0.0 if self.law.springs is None else self.law.springs.stretch
         if self.law.neo_hookean is not None:
@@ -269,7 +271,7 @@ class Membrane(Model):
         if self.law.skalak is not None:  # along a side that does not stretch across
             stretch = 2.0 * self.law.skalak.modulus * (1.0 + self.law.skalak.area)
         across = ACROSS * (self.law.tension or self.prestress) + BENT * self.bend / cell**2
-        return max(across, ALONG * stretch)
+        return max(across, ALONG * stretch * along)
 
     def remark(self, state: ModelState) -> str:
         """Its vertices."""
