@@ -248,8 +248,8 @@ class Assembly(Protocol):
     ties: list[Tied]
     """The ties of the island so far."""
     tie_ints: tuple[int, ...]
-    """The integers of the term that solves for all constraint forces (bodies/rigid/ties/tie_kernels.py); empty before it is
-    added."""
+    """The integers of the term that solves for all constraint forces (bodies/rigid/ties/tie_kernels.py); empty before
+    it is added."""
     driven: bool
     """Whether a contact's step already solves for the stops, motors and friction of ties."""
     went_on: Mapping[str, ModelState]

@@ -1,1 +1,1 @@
-"""Ties: rows, the matrix of all, its factors, and chains of them."""
+"""Ties: rows, the matrix and its factors, chains."""
