@@ -74,5 +74,5 @@ def test_the_bound_of_steps_that_is_told_is_that_of_the_spectrum(tmp_path):
         air.run.march.driver.rate(0.0, y, out, floats, system.ints)
     fastest = np.abs(np.linalg.eigvals((rates[:n] - rates[n:]).T / 2e-6)).max()
     immersion, skin, flow = (air.tasks[name].kind for name in ("immersion", "balloon", "air"))
-    (told,) = immersion.fastest_carried({"balloon": skin}, flow, None)
-    assert told.turn == pytest.approx(fastest, rel=0.06)
+    told = max(one.turn for one in immersion.fastest_carried({"balloon": skin}, flow, None))
+    assert told == pytest.approx(fastest, rel=0.06)

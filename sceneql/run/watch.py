@@ -335,8 +335,10 @@ def _forbidden(island: IslandRun) -> Diagnostic | None:
         change = np.linalg.norm(march.corrected[own].reshape(-1, 3), axis=1)
         given = np.linalg.norm(march.system.y[own].reshape(-1, 3), axis=1)
         k = int(np.argmax(change)) if bodies.count else 0
-        if bodies.count and change[k] > FORBIDDEN * (given.max() + change[k]):
-            x, y, z = march.system.y[own].reshape(-1, 3)[k] + march.corrected[own].reshape(-1, 3)[k]
+        scale = given.max(initial=0.0) + change.max(initial=0.0)
+        if bodies.count and change[k] > FORBIDDEN * scale:
+            start = march.system.y[own].reshape(-1, 3)[k] + march.corrected[own].reshape(-1, 3)[k]
+            x, y, z = np.where(np.abs(start) > FORBIDDEN * scale, start, 0.0)  # else by rounding alone
             which = f"body {k + 1} of '{name}'" if bodies.count > 1 else f"'{name}'"
             text = f"ties forbid the velocities at the start: {which} starts at {x:.3g} {y:.3g} {z:.3g} m/s"
             help = "give all bodies that ties hold the velocity and the spin that they have together"
