@@ -41,6 +41,8 @@ MADE = 0.05
 """The same of rigid bodies in contact, which forbids gains: in thrown boxes mode `local` makes up to 0.006."""
 FORBIDDEN = 1e-6
 """Change of velocities by ties at the start, relative to the velocities, from which on there is a warning."""
+ROUNDED = 1e-12
+"""Change of velocities, relative to the largest number that ties changed, below which it is rounding."""
 OVERSTRETCHED = 4.0
 """Strain (L - L0)/L0 of a spring from which on there is a warning, unless half of it was there at the start."""
 
@@ -335,10 +337,9 @@ def _forbidden(island: IslandRun) -> Diagnostic | None:
         change = np.linalg.norm(march.corrected[own].reshape(-1, 3), axis=1)
         given = np.linalg.norm(march.system.y[own].reshape(-1, 3), axis=1)
         k = int(np.argmax(change)) if bodies.count else 0
-        scale = given.max(initial=0.0) + change.max(initial=0.0)
-        if bodies.count and change[k] > FORBIDDEN * scale:
-            start = march.system.y[own].reshape(-1, 3)[k] + march.corrected[own].reshape(-1, 3)[k]
-            x, y, z = np.where(np.abs(start) > FORBIDDEN * scale, start, 0.0)  # else by rounding alone
+        rounded = ROUNDED * np.abs(march.corrected).max(initial=0.0)  # where spins alone are forbidden
+        if bodies.count and change[k] > max(FORBIDDEN * (given.max() + change[k]), rounded):
+            x, y, z = march.system.y[own].reshape(-1, 3)[k] + march.corrected[own].reshape(-1, 3)[k]
             which = f"body {k + 1} of '{name}'" if bodies.count > 1 else f"'{name}'"
             text = f"ties forbid the velocities at the start: {which} starts at {x:.3g} {y:.3g} {z:.3g} m/s"
             help = "give all bodies that ties hold the velocity and the spin that they have together"
