@@ -90,6 +90,10 @@ class Solver(Kind):
         """Whether it marches the tensions of flat skins of springs implicitly beyond their bound."""
         return False
 
+    def explicit_by_tolerance(self) -> bool:
+        """Whether it is explicit, its steps by a tolerance: stiffness then costs steps, of which `check` warns."""
+        return False
+
     def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
         """Growth factor of a fixed step on x'' = -frequency^2 x - (decay - i turn) x', in plain Python for `check`.
 

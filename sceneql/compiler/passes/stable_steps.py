@@ -19,6 +19,8 @@ from sceneql.quantities.diagnostic import Diagnostics
 Growth = Callable[[float, float, float, float], float | None]
 """`Solver.oscillation`."""
 SLACK = 1.0 + 1e-6
+STABLE, CRAWLS = 3.0, 1e6
+"""Step times the fastest rate up to which explicit methods of tolerances are stable, roughly; steps to warn of."""
 NOTABLE = 10.0
 """Growth over the run from which on a method that is stable at no step gives a warning."""
 
@@ -33,6 +35,9 @@ def warn_of_steps(
     for island in groups:
         solver = tasks[island.solver]
         step = getattr(solver.kind, "step", None)
+        if cast(Solver, solver.kind).explicit_by_tolerance():
+            _warn_of_many(script, island, tasks, end, found)
+            continue
         if not isinstance(step, float):
             continue
         written = script.sections.get("solvers", {}).get(island.solver)
@@ -60,6 +65,22 @@ def warn_of_steps(
                     text = message.format(what=f"{fastest.what}{origin}")
                     found.warning("unstable-step", text, at or place, help=help)
                     break
+
+
+def _warn_of_many(script: Script, island: Island, tasks: Mapping[str, Task], end: float, found: Diagnostics) -> None:
+    """Warn of a solver that is explicit, by a tolerance, where stability alone asks for more than CRAWLS steps."""
+    solver = tasks[island.solver]
+    all_modes = [(name, mode) for name, modes in _modes(island, tasks, end) for mode in modes]
+    name, fastest = max(all_modes, key=lambda one: one[1].size, default=("", None))
+    if fastest is None or not CRAWLS < end * fastest.size / STABLE < math.inf:
+        return
+    entry = script.sections.get(tasks[name].family, {}).get(name)
+    place = (None if entry is None else entry.place(fastest.at)) or tasks[name].span
+    origin = "" if place is None else f" ({place.source.name}:{place.line})"
+    steps = f"some {end * fastest.size / STABLE / 1e6:.2g} million steps of {duration(STABLE / fastest.size)}"
+    text = f"{solver.word} is explicit: it takes {steps}, set by {fastest.what}{origin}"
+    help = "let auto march it, or an implicit method, as radau"
+    found.warning("many-steps", text, solver.span or place, help=help)
 
 
 def later_bound(island: Island, tasks: Mapping[str, Task], end: float) -> tuple[float, str] | None:

@@ -42,6 +42,10 @@ class Adams(Solver):
         """How orders come about."""
         return f"its order follows the errors, from 2 to {self.order}, and is 2 after every event"
 
+    def explicit_by_tolerance(self) -> bool:
+        """It is."""
+        return True
+
     def stepper(self) -> Stepper:
         """Steps by the error, with the integral of the formula's polynomial as dense output."""
         return Stepper(

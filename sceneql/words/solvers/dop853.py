@@ -31,6 +31,10 @@ class Dop853(Solver):
     first_step: FixedTime | None = field("Length of the first step; by default it is chosen.", None, above=0)
     largest_step: FixedTime | None = field("Longest step allowed.", None, above=0)
 
+    def explicit_by_tolerance(self) -> bool:
+        """It is."""
+        return True
+
     def stepper(self) -> Stepper:
         """Steps by the error, with the method's own dense output."""
         return Stepper(

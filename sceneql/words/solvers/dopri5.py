@@ -27,6 +27,10 @@ class Dopri5(Solver):
     first_step: FixedTime | None = field("Length of the first step; by default it is chosen.", None, above=0)
     largest_step: FixedTime | None = field("No step is longer; by default as long as contacts allow.", None, above=0)
 
+    def explicit_by_tolerance(self) -> bool:
+        """It is."""
+        return True
+
     def stepper(self) -> Stepper:
         """Steps by the error of the embedded method."""
         return DORMAND_PRINCE.adaptive(

@@ -67,6 +67,10 @@ class RungeKutta(Solver):
         lower = tuple(row[:i] for i, row in enumerate(self.a))
         return Tableau(lower, self.b, self.b_hat)
 
+    def explicit_by_tolerance(self) -> bool:
+        """With a tolerance it is."""
+        return self.tolerance is not None
+
     def stepper(self) -> Stepper:
         """Fixed steps, or by the embedded error."""
         if self.tolerance is None:
