@@ -15,7 +15,6 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.flows.box_modes_kernels import along
 from sceneql.flows.layout import (
     BOTH,
-    COSINES,
     FREE_FREE,
     FREE_NODES,
     LANES,
@@ -34,11 +33,11 @@ BAND = 4096
 """Cells of a band of rows that the cache holds."""
 SCALE, AROUND, SINGULAR, LOW, HIGH, HEAD = range(6)
 VECTORS = 8
-"""What a store begins with: the factor of what is given; 1 where the rows are periodic, and where the first mode is
-known up to a constant, what its mean is multiplied by, else 0; what of the first and last row counts. Then for each row from and to before which mode c is as
-at the end, and where the others' begin; modes: what b is above 2, c at the end, c of the last row, sums, x of the row above and
-of the last one, and two while it is filled; and by row the
-first mode where it is summed up."""
+"""What a store begins with: the factor of what is given; 1 where the rows are periodic; what the mean of the first mode
+is multiplied by where that is known up to a constant, else 0; what of the first and of the last row counts. Then for
+each row from and to before which mode c is as at the end, and where the others' c begin; VECTORS numbers a mode: what b
+is above 2, c at the end, c of the last row, sums, x of the row above and of the last row, and two while the store is
+filled; and for each row the first mode where it is summed up."""
 SAME, NOTHING, TINY = 2.3e-16, 1e-18, 1e-280
 """A change of c that is rounding; l that is none; numbers that count as 0, below which processors are slow."""
 
@@ -85,7 +84,8 @@ def prepare(store, nx, ny, kind, least, shift, factor, along_x, tie, length):
     c, product = store[modes + 6 * nx :], store[modes + 7 * nx :]
     around = kind == WAVES
     low, high = at_node(kind, False), at_node(kind, True)
-    store[SCALE], store[AROUND], store[SINGULAR] = 1.0 / (tie * length), 1.0 * around, (tie / least if singular else 0.0)
+    store[SCALE], store[AROUND] = 1.0 / (tie * length), 1.0 * around
+    store[SINGULAR] = tie / least if singular else 0.0
     store[LOW], store[HIGH] = 0.5 if low == 2 else 1.0, 0.5 if high == 2 else 1.0
     most = 0
     for i in range(nx):
