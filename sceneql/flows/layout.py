@@ -20,7 +20,7 @@ CONDUCTANCES, SINK = 26, 29
 """By cell along x, y, z: of the pressure's equation, with the face on the low side; where the pressure is 0."""
 ITERATES, SINGULAR, SPECTRUM = 30, 31, 32
 """1: iterations, with the transform and CUT as preconditioner, 2: a linear solver by name; 1: pressure up to a
-constant; by cell: 1/eigenvalue."""
+constant; by cell: 1/eigenvalue, or of flat boxes the store of lines_kernels."""
 PUSHES = 33
 """By face: acceleration by given forces and pressures."""
 FRICTION = 34

@@ -31,6 +31,7 @@ from sceneql.flows.layout import (
     UNCUT,
     WORK,
 )
+from sceneql.flows.lines_kernels import FEWEST, through_lines
 from sceneql.grids.multigrid.stencil_kernels import dot, flow
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -40,6 +41,12 @@ ROUNDING = 1e-9
 """Difference from a face that is not cut, in parts, that counts as rounding."""
 MOST = 400
 """Iterations."""
+
+
+@lean_inlined
+def by_lines(ints):
+    """Whether the box's equation is solved by lines_kernels, whose store SPECTRUM is then."""
+    return ints[CELLS + 2] == 1 and ints[CELLS + 1] >= FEWEST
 
 
 @lean_inlined
@@ -212,15 +219,18 @@ def by_few(b, small, count, room, floats, ints):
     p_source, p_own = lists[6 * most :][:count], lists[7 * most :][:count]
     p, of_p = lists[8 * most :][:count], lists[9 * most :][:count]
     x_source, x_own = lists[10 * most :][:count], lists[11 * most :][:count]
-    z, spectrum = room[4 * n :], floats[ints[SPECTRUM] : ints[SPECTRUM] + n]
+    z, spectrum, flat = room[4 * n :], floats[ints[SPECTRUM] :], by_lines(ints)
     scratch, plans = floats[ints[WORK] :], ints[PLANS:]
     from_row, to_row = range_of(count, cells, nx, ny)
     from_plane, to_plane = range_of(count, cells, nx * ny, nz) if nz > 1 else (0, 1)
     start, stop = (nx * ny * from_plane, nx * ny * to_plane) if nz > 1 else (nx * from_row, nx * to_row)
-    box, none = (from_row, to_row, from_plane, to_plane), floats[:0]
+    box, rows, none = (from_row, to_row, from_plane, to_plane), (from_row, to_row), floats[:0]
     for c in range(n):
         z[c] = b[c]
-    through_few_rows(z, nx, ny, nz, floats, scratch, plans, spectrum, box, False, True)
+    if flat:
+        through_lines(z, nx, ny, floats, scratch, plans, spectrum, rows, False, True)
+    else:
+        through_few_rows(z, nx, ny, nz, floats, scratch, plans, spectrum, box, False, True)
     at_cells(count, cells, z, q, floats, ints)
     for number in range(count):
         r[number] = b[int(cells[number])] - q[number]
@@ -240,7 +250,10 @@ def by_few(b, small, count, room, floats, ints):
         for number in range(count):
             s[number] = r[number] - q[number]
             z[int(cells[number])] = s[number]
-        through_few_rows(z, nx, ny, nz, floats, scratch, plans, spectrum, box, True, True)
+        if flat:
+            through_lines(z, nx, ny, floats, scratch, plans, spectrum, rows, True, True)
+        else:
+            through_few_rows(z, nx, ny, nz, floats, scratch, plans, spectrum, box, True, True)
         for number in range(count):
             z[int(cells[number])] += e[number]
         at_cells(count, cells, z, q, floats, ints)
@@ -266,7 +279,10 @@ def by_few(b, small, count, room, floats, ints):
         before = now
     for number in range(count):
         b[int(cells[number])] += x_source[number]
-    through_modes(b, nx, ny, nz, floats, scratch, plans, spectrum, none, none, none, 0.0, 0.0)
+    if flat:
+        through_lines(b, nx, ny, floats, scratch, plans, spectrum, (0, ny), False, False)
+    else:
+        through_modes(b, nx, ny, nz, floats, scratch, plans, spectrum, none, none, none, 0.0, 0.0)
     for number in range(count):
         b[int(cells[number])] += x_own[number]
     return solved

@@ -43,7 +43,8 @@ from sceneql.flows.layout import (
     VELOCITY,
     WORK,
 )
-from sceneql.flows.near_solids_kernels import by_few, near_solids
+from sceneql.flows.lines_kernels import through_lines
+from sceneql.flows.near_solids_kernels import by_few, by_lines, near_solids
 from sceneql.grids.multigrid.layout import SOLVER
 from sceneql.grids.multigrid.linear_kernels import solver_at
 from sceneql.grids.multigrid.stencil_kernels import dot, multiply
@@ -59,8 +60,11 @@ MOST = 400
 def by_transform(x, floats, ints):
     """Solve the equation of the box, in place."""
     nx, ny, nz = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2]
-    spectrum, none = floats[ints[SPECTRUM] : ints[SPECTRUM] + nx * ny * nz], floats[:0]
-    through_modes(x, nx, ny, nz, floats, floats[ints[WORK] :], ints[PLANS:], spectrum, none, none, none, 0.0, 0.0)
+    spectrum, none, scratch = floats[ints[SPECTRUM] :], floats[:0], floats[ints[WORK] :]
+    if by_lines(ints):
+        through_lines(x, nx, ny, floats, scratch, ints[PLANS:], spectrum, (0, ny), False, False)
+    else:
+        through_modes(x, nx, ny, nz, floats, scratch, ints[PLANS:], spectrum, none, none, none, 0.0, 0.0)
 
 
 @lean_inlined
@@ -72,7 +76,9 @@ def rows_of_box(x, first, count, forward, floats, ints):
 
 @lean(types.void(A, A, I), inner=True)
 def by_transform_of_rows(x, floats, ints):
-    """What stands between."""
+    """What stands between, of deep boxes; of flat ones bands have done it."""
+    if by_lines(ints):
+        return
     nx, ny, nz = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2]
     spectrum, none = floats[ints[SPECTRUM] : ints[SPECTRUM] + nx * ny * nz], floats[:0]
     scratch, plans = floats[ints[WORK] :], ints[PLANS:]

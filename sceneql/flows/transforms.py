@@ -68,12 +68,16 @@ def plans(
 ) -> tuple[list[int], Floats, int]:  # fmt: skip
     """(integers of all three axes, 1/eigenvalues (cells,) of the pressure equation, size of scratch [floats]).
 
+    Of a flat box, in place of these, the store of lines_kernels.
+
     Eigenvalues stand in the order in which `through_modes_of_rows` asks for them: of BOTH rows along the last axis
     after those of the BOTH before, so that memory gives one after another.
     ``conductances``: those of the faces normal to each of the two or three axes.
     """
+    from sceneql.flows import lines_kernels as lines
+
     ints: list[int] = []
-    total, lengths = np.zeros(shape[::-1]), []
+    total, lengths, kinds = np.zeros(shape[::-1]), [], []
     for axis in range(3):
         if axis >= len(conductances):
             ints += [0] * PLAN
@@ -82,12 +86,19 @@ def plans(
         total += conductances[axis] * values.reshape([-1 if k == 2 - axis else 1 for k in range(3)])
         ints += plan_of(kind, length, assembly.floats)
         lengths.append(length)
+        kinds.append((kind, values))
+    room = BOTH * (8 * max(shape) + (max(shape) + 1) + 16) + 2 * PAD
     spectrum = total.ravel()
     least = spectrum[spectrum > 1e-12 * spectrum.max(initial=1e-300)].min(initial=np.inf)
+    if shape[2] == 1 and shape[1] >= lines.FEWEST:
+        (_, along_x), (kind, _) = kinds
+        store = np.zeros(lines.HEAD + 8 * (shape[0] + shape[1]) + 2 * spectrum.size)
+        held = 0.0 if spectrum.min() >= least else least
+        taken = lines.prepare(store, *shape[:2], kind, held, 0.0, conductances[0], along_x, conductances[1], lengths[0])
+        return ints, store[:taken], room
     inverse = 1.0 / (np.where(spectrum >= least, spectrum, least) * prod(lengths))
     rows = np.where(np.isfinite(inverse), inverse, 0.0).reshape(shape[len(conductances) - 1], -1)
     inverse = np.concatenate([rows[:, begin : begin + BOTH].ravel() for begin in range(0, rows.shape[1], BOTH)])
-    room = BOTH * (8 * max(shape) + (max(shape) + 1) + 16) + 2 * PAD
     return ints, inverse, room
 
 

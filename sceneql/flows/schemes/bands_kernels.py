@@ -5,7 +5,9 @@ on large grids a step takes as long as its numbers take from memory and back."""
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.flows.layout import AREAS, AT, AXES, BOTH, CELLS, FACES, PERIODIC, SCALES, VELOCITY
+from sceneql.flows.layout import AREAS, AT, AXES, BOTH, CELLS, FACES, PERIODIC, SCALES, SPECTRUM, VELOCITY
+from sceneql.flows.lines_kernels import rows_down, rows_up
+from sceneql.flows.near_solids_kernels import by_lines
 from sceneql.flows.projection_kernels import first_face, lessen_row, outflow_row, pushed_at, rows_of_box
 from sceneql.system.signatures_kernels import A, F, I
 
@@ -88,8 +90,22 @@ def gather(y1, gathered, q, floats, ints):
                     less[i] = -own[i]
             if by_bands(ints):
                 rows_of_box(q, first + ny * k, last - first, True, floats, ints)
+            if by_lines(ints):
+                rows_up(q, nx, ny, first, last, 0, ny, floats[ints[SPECTRUM] :])
     if not by_bands(ints):
         rows_of_box(q, 0, ny * ints[CELLS + 2], True, floats, ints)
+
+
+@lean_inlined
+def part_of_band(u, y1, end, q, scales, first, last, k, ints):
+    """Take the gradient of q from the velocities u of y1 in some rows, which are then remembered."""
+    at = ints[AT]
+    for row in range(first, last):
+        lessen_row(u, scales, q, 1.0, row, k, ints)
+    for number in range(ints[AXES] + 1):
+        begin, count = piece(number, first, last, k, ints)
+        for f in range(at + begin, at + begin + count):
+            end[f] = y1[f]
 
 
 @lean(types.void(A, A, A, A, A, A, F, F, A, I), inner=True)
@@ -102,7 +118,20 @@ def finish(y1, end, q, gathered, pressure, pressure_after, part, damped, floats,
         end[c] = y1[c]
     for c in range(at + faces, y1.size):
         end[c] = y1[c]
-    rows, known = rows_of_band(ints), nz if by_bands(ints) else 0  # layers whose rows stand for themselves
+    rows = rows_of_band(ints)
+    if by_lines(ints):  # from the last row to the first
+        for number in range((ny + rows - 1) // rows):
+            last = ny - number * rows
+            first = max(0, last - rows)
+            rows_down(q, nx, ny, first, last, 0, floats[ints[SPECTRUM] :])
+            rows_of_box(q, first, last - first, False, floats, ints)
+            # The lowest row needs the one below it.
+            low, high = first + 1 if first > 0 else 0, last if last == ny else last + 1
+            part_of_band(u, y1, end, q, scales, low, high, 0, ints)
+            for c in range(nx * first, nx * last):
+                pressure_after[c] = pressure[c] + (q[c] * part - damped * gathered[c])
+        return
+    known = nz if by_bands(ints) else 0  # layers whose rows stand for themselves
     if nz > 1 and ints[PERIODIC + 2] == 1:  # the first layer needs the last
         known = min(known, nz - 1)
     if known < nz:
@@ -116,11 +145,6 @@ def finish(y1, end, q, gathered, pressure, pressure_after, part, damped, floats,
             last = min(ny, j + rows)
             if not whole and (j < far or far == 0 or ints[PERIODIC + 1] == 0):
                 rows_of_box(q, j + ny * k, last - j, False, floats, ints)
-            for row in range(j, last):
-                lessen_row(u, scales, q, 1.0, row, k, ints)
-            for number in range(ints[AXES] + 1):
-                begin, count = piece(number, j, last, k, ints)
-                for f in range(at + begin, at + begin + count):
-                    end[f] = y1[f]
+            part_of_band(u, y1, end, q, scales, j, last, k, ints)
             for c in range(nx * (j + ny * k), nx * (last + ny * k)):
                 pressure_after[c] = pressure[c] + (q[c] * part - damped * gathered[c])
