@@ -220,8 +220,9 @@ class Limit:
             raise KeyboardInterrupt
 
     def press(self, number: int, frame: FrameType | None) -> None:
-        """Handle its signal, which may come after `look` has told."""
-        if not self._told:
+        """Handle its signal, which may come once after `look` has told."""
+        late, self._told = self._told, False
+        if not late:
             _press(number, frame)
 
 

@@ -61,7 +61,9 @@ def as_target(context: click.Context, parameter: click.Parameter, value: str | N
     if value is None:
         return {}
     path = Path(value)
-    folder = value.endswith(("/", os.sep)) or (not path.suffix and path.is_dir())
+    folder = value.endswith(("/", os.sep)) or path.is_dir()
+    if folder and path.is_file():
+        raise click.BadParameter(f"{path} is a file, and no folder")
     return {"folder" if folder else "output": path}
 
 

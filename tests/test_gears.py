@@ -97,3 +97,16 @@ def test_wheels_in_a_housing_that_tumbles_turn_against_it(tmp_path, axis, solver
     np.testing.assert_allclose(end[2:4], by * y[12], atol=good)
     np.testing.assert_allclose(rotation_matrix(end[4]), turn, atol=good)
     np.testing.assert_allclose(end[0], turn @ np.linalg.solve(both, [*(turn.T @ y[:3]), y[13]])[:3], atol=10 * good)
+
+
+def test_an_axis_that_is_rounded_is_that_of_the_hinges(tmp_path):
+    """It counted as none of the housing, which stood still then for the gear."""
+    angles = []
+    for axis in ("1 2 3", "0.267 0.535 0.802"):
+        script = FREE.format(axis="1 2 3", solver="dop853: {}", inertia="0.02 0.02 0.02")
+        script = script.replace("at: 0.2 0 0.04 m,", "at: 0.2 0 0.04 m, axis: 1 2 3,")
+        script = script.replace("other_axis: 1 2 3", f"axis: {axis}, other_axis: {axis}").replace(
+            "spin: 3 2 9", "spin: 3 2 1"
+        )
+        angles.append(runs.watch(tmp_path, script, [1], "first.angle", "second.angle", pruned=False)[0])
+    np.testing.assert_allclose(*angles, atol=1e-3)

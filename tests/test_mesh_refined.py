@@ -61,7 +61,8 @@ def test_blocks_without_surface_are_proved_by_slopes_where_ranges_are_too_wide()
 
 def test_a_smooth_solid_that_turns_too_much_all_over_gets_cells_of_half_the_side():
     """It took twice the time, and was twice as far from the surface, with a third of its cells cut by four."""
-    halved, asked = cut_finer(TANGLECUBE, 3.0, 32)[0], cut_finer(TANGLECUBE, 3.0, 64)[0]
+    (halved, left), (asked, _) = cut_finer(TANGLECUBE, 3.0, 32), cut_finer(TANGLECUBE, 3.0, 64)
+    assert left.cell == 6 / 64  # as `mesh` tells
     assert np.array_equal(halved.vertices, asked.vertices)
     assert np.array_equal(halved.triangles, asked.triangles)
     creased = cut_finer(STEINER, 0.6, 32)[0]  # along creases alone

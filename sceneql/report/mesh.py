@@ -147,7 +147,8 @@ def _of_solid(
         least = cell
         method = kept_sharp if sharp else partial(refined, tolerance=tolerance)
         if tolerance is None:
-            made = Within(*method(*box, cell), cell, 0.0)
+            polygons, left = method(*box, cell)
+            made = Within(polygons, left, (left and left.cell) or cell, 0.0)
         else:
             made = polygonise_within(*box, tolerance, size / COARSE, method)
         while not len(made.polygons.triangles) and made.cell > least:  # nothing is no distance from coarse cells

@@ -183,8 +183,8 @@ def mesh_runs(shape: Implicit) -> list[MeshRun]:
     made = []
     for cells in CELLS:
         cell = side / cells
-        (polygons, _), seconds = timed(partial(refined, shape.tape, shape.low, shape.high, cell))
-        made.append((cell, seconds, polygons.vertices, polygons.triangles))
+        (polygons, left), seconds = timed(partial(refined, shape.tape, shape.low, shape.high, cell))
+        made.append((left.cell or cell, seconds, polygons.vertices, polygons.triangles))
         if seconds > ENOUGH_SECONDS:
             break
     volumes = [volume(vertices, triangles) for _, _, vertices, triangles in made]

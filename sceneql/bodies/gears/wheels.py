@@ -105,7 +105,9 @@ def _turns(mover: Mover, axis: Floats, held: dict[tuple[int, int], _Axles], asse
         seen.add(_number(one))
         _, axes = _pose(one, assembly)
         mine = held.get(_number(one), _Axles())
-        along = [other for _, own, other in mine.hinges if np.linalg.norm(np.cross(axes @ np.array(own), axis)) < ONE]
+        along = [
+            other for _, own, other in mine.hinges if np.linalg.norm(np.cross(axes @ np.array(own), axis)) < ASLANT
+        ]
         left += [*along, *mine.welds]
         hinged = hinged or bool(along)
     return hinged

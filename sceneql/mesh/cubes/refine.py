@@ -7,6 +7,7 @@ there are then replaced by the fine curves.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -82,7 +83,8 @@ def refined(
     cells in which f has the other sign between corners of one sign; with a ``tolerance`` [m] also cells with triangles
     farther from the surface, unless these are more than FEW. They are cut by FINEST where the surface is seen to pass
     between corners of fine cells, within MOST_TWICE triangles. No cell is cut if groups are more than MOST_GROUPS.
-    Where a smooth surface turns by too much nearly everywhere, all cells get half the side.
+    Where a smooth surface turns by too much nearly everywhere, all cells get half the side, and again where they need
+    it: fewer triangles than cells cut where they turn, of thin tubes nearer at most and farther in the mean.
     The mesh is a closed 2-manifold; its bytes do not depend on the number of threads. Raises ValueError as
     ``grid_around``.
     """
@@ -109,7 +111,7 @@ def refined(
         finest = _groups(asked, FINEST, numbers)
         if parts < FINEST and len(finest) <= MANY_GROUPS:
             made, left = _cut(shop, coarse, doubt, finest, FINEST)
-    return unfolded(whole, made), left
+    return unfolded(whole, made), replace(left, cell=grid.cell)
 
 
 def _turns_much(coarse: Level, grid: Grid, numbers: Numbering) -> bool:

@@ -35,6 +35,8 @@ class Unresolved:
     """The grid of these cells."""
     seen: NDArray[np.bool_]
     """(n,) whether f was found to have the other sign in a cell."""
+    cell: float | None = None
+    """Side of the cells that are not cut [m], where it may be another than was asked for."""
 
     @property
     def cells(self) -> int:
