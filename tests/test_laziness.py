@@ -129,7 +129,7 @@ contacts: {touch: {collision: {mode: local}}}
 solvers: {main: {semi_implicit_euler: {step: 5 ms}}}
 outputs: {data: {record: {of: [load.energy]}}}
 """
-    ties = {f"sceneql.bodies.rigid.{name}_kernels" for name in ("tied_step", "tied_rows", "tie")}
+    ties = {f"sceneql.bodies.rigid.ties.{name}_kernels" for name in ("tied_step", "tied_rows", "tie")}
     ties.add("sceneql.linear.cones.bounded_rows_kernels")
     assert not modules_after(tmp_path, script.replace("TIES", ""), "render") & ties
     hung = "ties: {arm: {hinge: {between: [load, world], at: 1 0.6 0 m, axis: 0 0 1, friction: 1 N*m}}}"

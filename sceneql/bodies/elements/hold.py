@@ -87,7 +87,7 @@ class Hold(Part):
 
     said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
         ("rotation", "rotate", "turn", "angle", "spin", "axis", "about", "twist"),
-        "a hold turns with an object that it follows: write `follows: NAME`, of one whose `rotation` has keys, as "
+        "a hold turns with the object that it `follows`: name one whose `rotation` has keys, as "
         "`rotation: {about: x, angle: {keys: {0 s: 0 deg, 1 s: 90 deg}}}`",
     )
 
