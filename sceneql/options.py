@@ -61,8 +61,8 @@ def as_target(context: click.Context, parameter: click.Parameter, value: str | N
     if value is None:
         return {}
     path = Path(value)
-    folder = value.endswith(("/", os.sep)) or path.is_dir()
-    if folder and path.is_file():
+    folder = value.endswith(("/", os.sep)) or (not path.suffix and os.path.isdir(value))
+    if folder and os.path.isfile(value.rstrip("/" + os.sep)):
         raise click.BadParameter(f"{path} is a file, and no folder")
     return {"folder" if folder else "output": path}
 
