@@ -15,7 +15,6 @@ from sceneql.bodies.rigid.ties.tie_layout import (
     CHAIN,
     CHAIN_AT,
     EASE_AT,
-    FACTORS_FROM,
     FIRST_ROW,
     FRESH,
     LANES,
@@ -44,9 +43,8 @@ from sceneql.bodies.rigid.ties.tie_rows_kernels import (
     weighed_by,
 )
 from sceneql.compiled.arithmetic_kernels import widest
-from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.kernels import lean
 from sceneql.compiled.lanes_kernels import below, fma, load, most, spread, store
-from sceneql.compiled.prefetch_kernels import fetch_all
 from sceneql.system.signatures_kernels import TERM, A, F, I, N
 
 LANE = np.arange(float(LANES))
@@ -106,13 +104,6 @@ def pull(floats, ints, tie, begun):
                 m[AT_A + c] += change[c]
 
 
-@lean_inlined
-def fetch_factors(floats, ints, tie):
-    """Ask for the factors of a tie that comes soon."""
-    at = tie_at(ints, tie)
-    fetch_all(floats, ints[at + FACTORS_FROM], ints[at + FACTORS_FROM] + 2 * LANES * ints[at + ROWS_OF])
-
-
 @lean(F(A, I, N, F))
 def take_in(floats, ints, tie, part):
     """Eliminate a tie, its rows and movers being written; what is left of its rows, as `left_of` says."""
@@ -132,7 +123,6 @@ def hold(t, y, rate, floats, ints):
         which = ints[at : at + SIDES]
         if tie + AHEAD < ints[TIES]:
             fetch_tie(floats, ints, tie + AHEAD)
-            fetch_factors(floats, ints, tie + AHEAD)
         for side in range(2):
             if which[MARKS] & (FRESH << side):
                 m = which[ONE + side]
@@ -149,7 +139,6 @@ def hold(t, y, rate, floats, ints):
         for tie in range(ints[TIES] - 1, -1, -1):
             if tie >= AHEAD:
                 fetch_tie(floats, ints, tie - AHEAD)
-                fetch_factors(floats, ints, tie - AHEAD)
             pull(floats, ints, tie, True)
             at = tie_at(ints, tie)
             for side in range(2):

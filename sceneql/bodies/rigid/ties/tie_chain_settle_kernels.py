@@ -8,7 +8,7 @@ factors of their own.
 
 from numba import types
 
-from sceneql.bodies.rigid.ties.tie_chain_hold_kernels import fetch_factors, pull
+from sceneql.bodies.rigid.ties.tie_chain_hold_kernels import pull
 from sceneql.bodies.rigid.ties.tie_chain_kernels import forward, tie_at
 from sceneql.bodies.rigid.ties.tie_kernels import AHEAD, fetch_tie, survey_tie, well
 from sceneql.bodies.rigid.ties.tie_layout import (
@@ -43,7 +43,6 @@ def open_places(y, floats, ints):
     for tie in range(ints[TIES]):
         if tie + AHEAD < ints[TIES]:
             fetch_tie(floats, ints, tie + AHEAD)
-            fetch_factors(floats, ints, tie + AHEAD)
         worst = max(worst, survey_tie(y, floats, ints, tie))
         at = tie_at(ints, tie)
         to = ints[at + ROWS_FROM]
@@ -62,7 +61,6 @@ def open_speeds(y, floats, ints, moved):
     for tie in range(ints[TIES]):
         if tie + AHEAD < ints[TIES]:
             fetch_tie(floats, ints, tie + AHEAD)
-            fetch_factors(floats, ints, tie + AHEAD)
         if moved:
             gap = max(gap, survey_tie(y, floats, ints, tie))
         speed = max(speed, weigh_speeds_of(floats, ints, tie, ints[tie_at(ints, tie) + FIRST_ROW]))
@@ -76,7 +74,6 @@ def close(y, floats, ints, places):
     for tie in range(ints[TIES] - 1, -1, -1):
         if tie >= AHEAD:
             fetch_tie(floats, ints, tie - AHEAD)
-            fetch_factors(floats, ints, tie - AHEAD)
         pull(floats, ints, tie, False)
         at = tie_at(ints, tie)
         for side in range(2):
