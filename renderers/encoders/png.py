@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
@@ -21,8 +22,9 @@ FAST = 2
 class Writer:
     """Writer of ``name.png``, or of ``name.0000.png``, ``name.0001.png``, ...; every file is complete when it appears.
 
-    With more than one thread the pictures of a sequence are encoded in the background, one at a time. A picture must
-    not change after ``write``, and an error is raised by the next call or at the end.
+    With more than one thread the pictures of a sequence are encoded in the background, as many at once as there are
+    threads: each also waits for the disk. A picture must not change after ``write``, and an error is raised by a later
+    call or at the end.
     """
 
     def __init__(self, path: Path, *, numbered: bool, comment: str, compression: int = 6) -> None:
@@ -31,23 +33,25 @@ class Writer:
         self.made: list[Path] = []
         self._count = 0
         self._beside: ThreadPoolExecutor | None = None
-        self._last: Future[None] | None = None
+        self._underway: deque[tuple[Path, Future[None]]] = deque()
 
     def write(self, picture: NDArray[uint8]) -> None:
-        """Add a picture (h, w, 3). Raises the error of the picture before, if it failed."""
+        """Add a picture (h, w, 3). Raises the error of one before, if it failed."""
         from sceneql.compiled.kernels import thread_count
 
-        self._settle()
+        threads = thread_count()
+        self._settle(threads - 1)
         path = self.path.with_name(f"{self.path.stem}.{self._count:04d}.png") if self.numbered else self.path
         self._count += 1
-        if self.numbered and thread_count() > 1:
-            self._beside = self._beside or ThreadPoolExecutor(1, thread_name_prefix="png")
-            self._last = self._beside.submit(self._save, picture, path)
+        if self.numbered and threads > 1:
+            self._beside = self._beside or ThreadPoolExecutor(threads, thread_name_prefix="png")
+            self._underway.append((path, self._beside.submit(self._save, picture, path)))
         else:
             self._save(picture, path)
+            self.made.append(path)
 
     def close(self) -> list[Path]:
-        """Wait for the last picture; returns the files made. Raises its error."""
+        """Wait for the last pictures; returns the files made, in order. Raises their first error."""
         try:
             self._settle()
         finally:
@@ -56,8 +60,9 @@ class Writer:
 
     def abort(self) -> list[Path]:
         """Stop; returns the files made, all complete."""
-        with suppress(Exception):  # the error that ended the run is reported instead
-            self._settle()
+        while self._underway:
+            with suppress(Exception):  # the error that ended the run is reported instead
+                self._settle()
         self._end()
         return self.made
 
@@ -71,13 +76,13 @@ class Writer:
                 notes = PngImagePlugin.PngInfo()
                 notes.add_text("Comment", self.comment)
                 Image.fromarray(picture).save(stream, "png", pnginfo=notes, compress_level=self.compression)
-        self.made.append(path)
 
-    def _settle(self) -> None:
-        """Wait for the last picture. Raises its error, only once."""
-        last, self._last = self._last, None
-        if last is not None:
-            last.result()
+    def _settle(self, most: int = 0) -> None:
+        """Wait until at most so many pictures are under way. Raises the error of one that failed, only once."""
+        while len(self._underway) > most or (self._underway and self._underway[0][1].done()):
+            path, saved = self._underway.popleft()
+            saved.result()
+            self.made.append(path)
 
     def _end(self) -> None:
         if self._beside is not None:
