@@ -78,7 +78,8 @@ def write_pressure(
     wide, layer = cells.shape[0] + 9, (cells.shape[0] + 1) * (cells.shape[1] + 1)
     rows = 6 * wide + faces.axes * (wide + layer)
     room = max(room, faces.count + rows)
-    ints[layout.WORK] = assembly.floats(np.zeros(room + (0 if uniform else 5 * n))) + (0 if uniform else 5 * n)
+    before = 0 if uniform else 1 + 5 * n  # of iterations
+    ints[layout.WORK] = assembly.floats(np.zeros(before + room)) + before
     if solver in ("auto", "fast_transform"):
         return np.zeros(0, dtype=np.int64), "" if uniform else " by conjugate gradients"
     return _by_name(solver, faces, sink, assembly, ints, varies)

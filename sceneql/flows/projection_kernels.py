@@ -54,6 +54,8 @@ SMALL = 2e-12
 """Residual of iterations, in parts of what flows through faces."""
 MOST = 400
 """Iterations."""
+LISTED = 2
+"""What the number of cells near solids is kept more by, so that 0 is none that is known."""
 
 
 @lean(types.void(A, A, I), inner=True)
@@ -134,7 +136,12 @@ def by_iterations(b, small, floats, ints):
     n = nx * ny * nz
     room = floats[ints[WORK] - 5 * n : ints[WORK]]
     most, sink = n // 3, floats[ints[SINK] : ints[SINK] + n]
-    few = near_solids(room[4 * n :], room, room[most:], most, floats, ints)
+    few, known = -1, floats[ints[WORK] - 5 * n - 1 : ints[WORK] - 5 * n]
+    if ints[LED] == 0 and known[0] > 0.0:  # solids that stand still are listed once
+        few = int(known[0]) - LISTED
+    else:
+        few = near_solids(room[4 * n :], room, room[most:], most, floats, ints)
+        known[0] = few + LISTED
     if few >= 0:
         centered(b, sink, ints)
         solved = by_few(b, small, few, room, floats, ints)

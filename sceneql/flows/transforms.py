@@ -102,6 +102,21 @@ def plans(
     return ints, inverse, room
 
 
+def lines_room(shape: tuple[int, int, int], kind: int, along_x: Floats, tie: float) -> int:
+    """Numbers that a store of lines_kernels takes for (1 + a L) x = w of a flat box, whatever a is; 0: there is none.
+
+    L has the eigenvalues ``along_x`` (nx,) along x, and modes of a ``kind`` and ``tie`` (2 x - left - right) along y.
+    """
+    from sceneql.flows import lines_kernels as lines
+
+    nx, ny, _ = shape
+    if ny < lines.FEWEST or not tie > 0.0:
+        return 0
+    store = np.zeros(lines.HEAD + 8 * (nx + ny) + 2 * nx * ny)
+    taken: int = lines.prepare(store, nx, ny, kind, 0.0, 1e-12 * tie, 1.0, along_x, tie, 1.0)
+    return max(0, taken)
+
+
 def factors(n: int) -> list[int]:
     """The factors 4, 2 and odd primes of n, with multiplicity."""
     found = []

@@ -64,7 +64,7 @@ def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[
     """
     import numpy as np
 
-    from sceneql.flows.transforms import modes, plan_of
+    from sceneql.flows.transforms import lines_room, modes, plan_of
 
     shape, n = grid.cells.shape, int(np.prod(grid.cells.shape))
     volume = floats[grid.cells.insides_at : grid.cells.insides_at + n].reshape(shape[::-1])
@@ -72,7 +72,7 @@ def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[
     inner = volume[tuple(slice(1, -1) if count > 2 else slice(None) for count in shape[::-1])]
     # Cells that solids cut may have more than a whole one: the fluid moved with them.
     whole = float(np.median(inner[inner > 0.0])) if (inner > 0.0).any() else float(volume.max())
-    decays, plans, lengths, total, axes = [], [], 1, 0.0, []
+    decays, plans, lengths, total, axes, along = [], [], 1, 0.0, [], []
     for axis in range(3):
         count, periodic = shape[axis], grid.cells.periodic[axis]
         ties = floats[grid.faces_at[axis] : grid.faces_at[axis] + n].reshape(shape[::-1])
@@ -90,6 +90,7 @@ def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[
         zero = (fixed[0], fixed[1]) if faces else (held[0], held[1])
         kind, length, values = modes(count, periodic, zero, faces)
         decays.append(tables.store(rate * values))
+        along.append((kind, rate, rate * values))
         plans += plan_of(kind, length, tables.store)
         lengths *= length
         total += 2.0 * rate * whole
@@ -97,18 +98,25 @@ def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[
     offsets = (grid.at, *shape, grid.cells.insides_at, grid.sink_at, *grid.faces_at)
     odd = _unlike_product(volume, sink, whole, axes)
     sizes = tables.store([lengths, whole, total])
-    return [*offsets, *decays, sizes, grid.at + n if tallied else -1, int(not odd.any()), *plans, *_extent(odd)]
+    lines = -1
+    if len(along) == 2:
+        kind, tie, _ = along[1]
+        room = lines_room(shape, kind, along[0][2], tie)
+        lines = tables.store([np.nan, tie, room, *[0.0] * room]) if room > 0 else -1
+    exact, rows = int(not odd.any()), _odd_rows(odd)
+    odd_at = tables.store(rows) if rows else -1
+    return [*offsets, *decays, sizes, grid.at + n if tallied else -1, exact, *plans, odd_at, lines]
 
 
-def _extent(odd: Any) -> list[int]:
-    """From and to before which cell along x, y, z of a grid (nz, ny, nx) any is marked; 0s where none is."""
+def _odd_rows(odd: Any) -> list[int]:
+    """Number of rows of a grid (nz, ny, nx) with a marked cell; of each the row, from and to before which cell. Empty
+    where none is."""
     import numpy as np
 
-    found = []
-    for axis in (2, 1, 0):
-        places = np.flatnonzero(odd.any(axis=tuple(one for one in range(3) if one != axis)))
-        found += [int(places[0]), int(places[-1]) + 1] if len(places) else [0, 0]
-    return found
+    flat = odd.reshape(-1, odd.shape[2])
+    rows = np.flatnonzero(flat.any(axis=1))
+    first, last = flat[rows].argmax(axis=1), odd.shape[2] - flat[rows, ::-1].argmax(axis=1)
+    return [len(rows), *np.column_stack([rows, first, last]).ravel().tolist()] if len(rows) else []
 
 
 def _line(count: int, rate: float, periodic: bool, zero: tuple[bool, bool], faces: bool) -> tuple[Any, Any, Any]:
@@ -211,7 +219,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     return Prepared(
         settings=np.array([*first, *tables.numbers]),
         numbers=np.array([*head, *np.ravel(operators), *flow.ints], dtype=np.int64),
-        work=ARRAYS * len(system.y) + 3 * int(np.prod(flow.cells.shape)),
+        work=ARRAYS * len(system.y) + 4 * int(np.prod(flow.cells.shape)),
         text=text,
         last_stage=UNREAD if alone else None,
     )

@@ -24,6 +24,7 @@ from sceneql.flows.schemes.bands_kernels import explicit, finish, gather
 from sceneql.flows.schemes.operators_kernels import (
     EXACT,
     HEAD,
+    ODD,
     OPERATOR,
     OPERATORS,
     add_spread,
@@ -77,7 +78,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     rate1, wanted, spreading, room = work[:n], work[6 * n : 7 * n], work[7 * n : 8 * n], work[8 * n :]
     one = numbers[numbers[FLOW_AT] :]
     cells = one[CELLS] * one[CELLS + 1] * one[CELLS + 2]
-    pressures = work[ARRAYS * n : ARRAYS * n + 3 * cells]
+    pressures = work[ARRAYS * n : ARRAYS * n + 4 * cells]
     q = floats[one[PRESSURE] : one[PRESSURE] + cells]
     scheme = numbers[SCHEME]
     rate = rate_at(functions[AT_RATE])
@@ -127,24 +128,27 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             continue
         volume, aim = floats[op[4] : op[4] + size], wanted[op[0] : op[0] + size]
         x0, x_before = y0[op[0] : op[0] + size], before[op[0] : op[0] + size]
-        for c in range(size):  # iterations begin with the values that go on as they went
+        for c in range(size):
             aim[c] = x[c]
-            x[c] = x0[c] + ahead * (x0[c] - x_before[c]) if volume[c] > 0.0 else x[c]
+        if op[ODD] < 0:  # iterations begin with the values that go on as they went
+            for c in range(size):
+                x[c] = x0[c] + ahead * (x0[c] - x_before[c]) if volume[c] > 0.0 else x[c]
         solved &= solve(op, h * implicit / lead, wanted, y1, SMALL, floats, tables, floats[one[WORK] :], room)
-    gathered, latest_q = room[:cells], pressures[2 * cells :]
+    gathered, latest_q, guess = room[:cells], pressures[2 * cells : 3 * cells], pressures[3 * cells :]
     part, damped = lead / h, implicit * settings[VISCOSITY]
     if one[ITERATES] > 0:
         outflow(y1, gathered, VELOCITY, floats, one)
-        if has_before:  # iterations begin with what the step before took away
-            less_gradient(y1, latest_q, 1.0, floats, one)
+        if has_before:  # iterations begin with what steps before took away, as that goes on
+            less_gradient(y1, guess, 1.0, floats, one)
             solved &= project(y1, VELOCITY, floats, one)
             for c in range(cells):
-                q[c] += latest_q[c]
+                q[c] += guess[c]
         else:
             for c in range(cells):
                 q[c] = -gathered[c]
             solved &= rid(y1, VELOCITY, floats, one)
         for c in range(cells):
+            guess[c] = q[c] + (q[c] - latest_q[c] if has_before else 0.0)
             latest_q[c] = q[c]
             pressure_after[c] = pressure[c] + (q[c] * part - damped * gathered[c])
     else:

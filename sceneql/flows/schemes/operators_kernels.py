@@ -8,13 +8,29 @@ transforms, the volume of a cell and the sum of its conductances; then as in ope
 their number.
 """
 
+import math
+
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.flows.box_modes_kernels import through_modes
-from sceneql.flows.layout import FREE_FREE, FREE_NODES, KIND, NODES, NODES_FREE, PLAN
-from sceneql.flows.schemes.beside_solids_kernels import around, solved_around
-from sceneql.flows.schemes.operator_layout import DECAYS, EXACT, OPERATOR, PLANS_AT, SIZES_AT, TALLY
+from sceneql.flows.layout import FREE_FREE, FREE_NODES, KIND, LENGTH, NODES, NODES_FREE, PLAN
+from sceneql.flows.lines_kernels import prepare, through_lines
+from sceneql.flows.schemes.beside_solids_kernels import solved_around
+from sceneql.flows.schemes.operator_layout import (
+    A_OF,
+    DECAYS,
+    EXACT,
+    LINES,
+    ODD,
+    OPERATOR,
+    PLANS_AT,
+    SIZE_OF,
+    SIZES_AT,
+    STORE_OF,
+    TALLY,
+    TIE_OF,
+)
 from sceneql.grids.multigrid.stencil_kernels import dot, multiply
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -47,9 +63,28 @@ def more_at_end(place, count, kind):
 
 
 @lean_inlined
+def by_lines(op, a, tables):
+    """Whether a flat field's equation is solved by lines_kernels, whose store is filled for a then."""
+    if op[LINES] < 0:
+        return False
+    head = tables[op[LINES] :]
+    if head[A_OF] != a:
+        nx, ny, plans = op[1], op[2], op[PLANS_AT:]
+        store, along_x = head[STORE_OF : STORE_OF + int(head[SIZE_OF])], tables[op[DECAYS] :][:nx]
+        tie, length = a * head[TIE_OF], 1.0 * plans[LENGTH]
+        filled = prepare(store, nx, ny, plans[PLAN + KIND], 0.0, 1.0, a, along_x, tie, length) >= 0
+        head[A_OF] = a if filled else math.nan
+    return head[A_OF] == a
+
+
+@lean_inlined
 def by_decay(op, a, z, tables, scratch):
     """Divide the eigenmodes of a box by 1 + a times their decay rates, in place."""
     nx, ny, nz = op[1], op[2], op[3]
+    if by_lines(op, a, tables):
+        store = tables[op[LINES] + STORE_OF :]
+        through_lines(z, nx, ny, tables, scratch, op[PLANS_AT:], store, (0, ny), False, False)
+        return
     x, y, z_rates = tables[op[DECAYS] :][:nx], tables[op[DECAYS + 1] :][:ny], tables[op[DECAYS + 2] :][:nz]
     size = tables[op[SIZES_AT]]
     through_modes(z, nx, ny, nz, tables, scratch, op[PLANS_AT:], tables[:0], x, y, z_rates, a, size)
@@ -161,14 +196,14 @@ def solve(op, a, wanted, y, small, floats, tables, scratch, room):
     for c in range(n):
         target += volume[c] * aim[c] ** 2
         p[c] = 0.0
-    box = around(op, a, small, tables)
-    if box[1] > 0:
+    if op[ODD] >= 0:
         for c in range(n):
             z[c] = aim[c] if volume[c] > 0.0 else x[c]
         by_modes(op, a, z, floats, tables, scratch, r)
         for c in range(n):
             x[c] = z[c] if volume[c] > 0.0 else x[c]
-        if solved_around(op, a, box, small * small * target, aim, x, volume, sink, gx, gy, gz, r, p, q, own):
+        enough = small * small * target
+        if solved_around(op, a, small, enough, aim, x, volume, sink, gx, gy, gz, r, p, q, own, z, tables):
             return True
         for c in range(n):
             p[c] = 0.0
