@@ -42,6 +42,22 @@ def test_sharp_meshes_have_the_topology_of_others(name):
     assert not len(folds(bounded(*box[:3]), sharp))
 
 
+@pytest.mark.parametrize(
+    ("text", "cells", "pieces"),
+    [
+        ("max(40*(abs(sqrt(x^2+y^2+z^2) - 0.875) - 0.025), sqrt(x^2+y^2+z^2) - 0.9125)", 50, [2, 2]),
+        ("max(40*(abs(sqrt(x^2+y^2+z^2) - 0.875) - 0.025), sqrt(x^2+y^2+z^2) - 0.9125)", 60, [2, 2]),
+        ("max(sqrt(x^2+y^2+z^2) - 0.9, 20*(abs(x + 0.4*y + 0.3*z) - 0.02))", 56, [2]),
+    ],
+)
+def test_sheets_that_another_field_cuts_are_not_torn(text, cells, pieces):
+    """Near the cut, values inside are those of the distance to it, which say nothing of how thick the sheet is."""
+    found = polygonise(tape_of(text), (-1.0,) * 3, (1.0,) * 3, 2.0 / cells)
+    assert_closed_manifold(found)
+    assert euler_by_piece(found.triangles) == pieces
+    assert not len(overturned(bounded(tape_of(text), (-1.0,) * 3, (1.0,) * 3), found))
+
+
 def test_cubes_that_touch_are_two_with_their_edges_and_corners():
     sharp, _ = kept_sharp(tape_of(TWO_CUBES), (-0.9,) * 3, (0.9,) * 3, 1.8 / 64)
     assert euler_by_piece(sharp.triangles) == [2, 2]

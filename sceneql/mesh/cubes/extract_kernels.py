@@ -6,7 +6,7 @@ from sceneql.field.tape.batch_kernels import LANES
 from sceneql.field.tape.simplify_kernels import simplify
 from sceneql.field.tape.tape_ops import TAPE
 from sceneql.mesh.cubes.cull_kernels import CLEAR, CUT, REACH, verdict
-from sceneql.mesh.cubes.decide_kernels import CASES, decide
+from sceneql.mesh.cubes.decide_kernels import CASES, decide_by_field
 from sceneql.mesh.cubes.grid import BLOCK
 from sceneql.mesh.cubes.hidden_kernels import look_into
 from sceneql.mesh.cubes.polish_kernels import DX, DY, DZ, FA, FB, SIDE, UNDEFINED, A, B, T, normals, polish
@@ -34,9 +34,12 @@ def insides(values, masks):
 
 
 @inlined
-def cubes_of(values, masks, corners, first, faces, tunnel, start, own, cubes, at, tally):
-    """Write the cubes with a change of sign as (place in the block, variant) from ``at`` on; count what they make."""
-    n = at
+def cubes_of(
+    code, constants, parts, scratch, grid, i, j, k, values, masks, corners, first, faces, tunnel, start, own,
+    cubes, begun, tally,
+):  # fmt: skip
+    """Write the cubes with a change of sign as (place in the block, variant) from ``begun`` on; count what is made."""
+    n = begun
     for z in range(BLOCK):
         for y in range(BLOCK):
             row = z * NODES + y
@@ -56,15 +59,18 @@ def cubes_of(values, masks, corners, first, faces, tunnel, start, own, cubes, at
                 variant = first[config]
                 if faces[config, 0, 0] != -1:
                     p = row * NODES + x
-                    for k in range(8):
-                        corners[k] = values[p + (k & 1) + (k >> 1 & 1) * NODES + (k >> 2) * NODES * NODES]
-                    variant = decide(corners, config, first, faces, tunnel)
+                    for at in range(8):
+                        corners[at] = values[p + (at & 1) + (at >> 1 & 1) * NODES + (at >> 2) * NODES * NODES]
+                    variant = decide_by_field(
+                        code, constants, parts, scratch, grid, i + x, j + y, k + z, corners, config, first, faces,
+                        tunnel,
+                    )  # fmt: skip
                 cubes[n, 0] = (z * BLOCK + y) * BLOCK + x
                 cubes[n, 1] = variant
                 n += 1
                 tally[TRIANGLES] += start[variant + 1] - start[variant]
                 tally[OWN] += own[variant]
-    tally[CUBES] = n - at
+    tally[CUBES] = n - begun
     return n
 
 
@@ -184,7 +190,10 @@ def extract(
         parts2 = near[1][:used]
         sample(code2, constants, parts2, registers, short[2], points, grid, i, j, k, values)
         if insides(values, masks):
-            found = cubes_of(values, masks, corners, first, faces, tunnel, start, own, cubes, found, tally[b])
+            found = cubes_of(
+                code2, constants, parts2, scratch, grid, i, j, k, values, masks, corners, first, faces, tunnel, start,
+                own, cubes, found, tally[b],
+            )  # fmt: skip
             before = vertices
             vertices = vertices_of(
                 code2, constants, parts2, registers, slope, points, starts, search,

@@ -1,4 +1,4 @@
-"""Marching cubes on a tape: closed, with the topology of the trilinear interpolant. Imports numpy and numba."""
+"""Marching cubes on a tape: closed, in ambiguous cubes joined as f itself is at saddles. Imports numpy and numba."""
 
 from __future__ import annotations
 

@@ -80,6 +80,69 @@ def beyond(code, constants, parts, scratch, values, q, x, y, z, h, axis, steps):
 
 
 @inlined
+def suspects(values, p, step, before, behind, n, bound, mark, marks):
+    """Add ``mark`` to ``marks`` (n,) of the edges between nodes p and p + step that may be among ``slips``, and of the
+    n - 1 after them; returns whether there are any.
+
+    By f there and at two more nodes of each, ``before`` it and ``behind``; where these are nodes of the edge itself,
+    nothing is asked for.
+    """
+    at, beside, first, last = values[p:], values[p + step :], values[p - before :], values[p + behind :]
+    begins, ends = before == 0, behind == step
+    some = False
+    for i in range(n):
+        f, g = at[i], beside[i]
+        a, b = abs(f), abs(g)
+        falls = (abs(first[i]) > 2.0 * a) | begins
+        rises = (abs(last[i]) > 2.0 * b) | ends
+        found = ((f < 0.0) == (g < 0.0)) & ((a < bound) | (b < bound)) & falls & rises
+        marks[i] += mark if found else 0.0
+        some |= found
+    return some
+
+
+@inlined
+def suspected(values, slopes, bound):
+    """Whether an edge of a block may be one of ``slips``; the sum of 1, 2 and 4 for those along x, y and z that begin
+    at a node into values[NODES^3:].
+
+    By f at nodes alone, many at a time: it tells of most edges that they are not. Of edges that leave the block nothing
+    is told.
+    """
+    last = NODES**3
+    marks = values[last:]
+    for p in range(last):
+        marks[p] = 0.0
+    some = False
+    if slopes[0] < 0.0 < slopes[1]:
+        some |= suspects(values, 1, 1, 1, 2, last - 3, bound, 1.0, marks[1:])
+        for p in range(0, last, NODES):  # where rows begin and end
+            marks[p] = marks[p + BLOCK - 1] = 0.0
+            some |= suspects(values, p, 1, 0, 2, 1, bound, 1.0, marks[p:])
+            some |= suspects(values, p + BLOCK - 1, 1, 1, 1, 1, bound, 1.0, marks[p + BLOCK - 1 :])
+    for axis in range(1, 3):
+        if not slopes[2 * axis] < 0.0 < slopes[2 * axis + 1]:
+            continue
+        step, mark = NODES**axis, 2.0 * axis
+        for row in range(last // (NODES * step) * BLOCK):
+            at = row % BLOCK
+            p = (row // BLOCK * NODES + at) * step
+            before = step if at > 0 else 0
+            behind = 2 * step if at + 2 < NODES else step
+            some |= suspects(values, p, step, before, behind, step, bound, mark, marks[p:])
+    return some
+
+
+@inlined
+def near_suspects(values, p):
+    """Whether one of the edges that begin at the corners of the cube from node p on is marked by ``suspected``."""
+    some = 0.0
+    for c in range(7):
+        some += values[NODES**3 + p + (c & 1) + (c >> 1 & 1) * NODES + (c >> 2) * NODES * NODES]
+    return some > 0.0
+
+
+@inlined
 def slips(code, constants, parts, scratch, code2, parts2, values, slopes, grid, outer, inner, i, j, k, p, need):
     """Whether the surface passes an edge of the cube from node p on twice, by more than ``need``, not at a rim."""
     h = grid[3]
@@ -92,6 +155,8 @@ def slips(code, constants, parts, scratch, code2, parts2, values, slopes, grid, 
         upward = NODES if axis == 2 else NODES**2
         for edge in range(4):
             q = p + (edge & 1) * across + (edge >> 1) * upward
+            if int(values[NODES**3 + q]) >> axis & 1 == 0:
+                continue
             f, g = values[q], values[q + step]
             a, b = abs(f), abs(g)
             at = q // step % NODES
@@ -142,13 +207,15 @@ def slipped(
     for axis in range(3):
         steady = max(steady, max(slopes[2 * axis], -slopes[2 * axis + 1]))
         turns = turns or slopes[2 * axis] < 0.0 < slopes[2 * axis + 1]
-    if most_bound <= SHALLOW * steady * h or not turns:
+    if most_bound <= SHALLOW * steady * h or not turns or not suspected(values, slopes, most_bound):
         return count
     for row in range(BLOCK * BLOCK):
         y, z = row % BLOCK, row // BLOCK
         for x in range(BLOCK):
             p = (z * NODES + y) * NODES + x
             if nearest[p] < np.inf or eighths >> (x // half + 2 * (y // half) + 4 * (z // half)) & 1 == 0:
+                continue
+            if not near_suspects(values, p):
                 continue
             least, most = np.inf, -np.inf
             for c in range(8):
