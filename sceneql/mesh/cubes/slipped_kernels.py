@@ -134,12 +134,17 @@ def suspected(values, slopes, bound):
 
 
 @inlined
-def near_suspects(values, p):
-    """Whether one of the edges that begin at the corners of the cube from node p on is marked by ``suspected``."""
-    some = 0.0
-    for c in range(7):
-        some += values[NODES**3 + p + (c & 1) + (c >> 1 & 1) * NODES + (c >> 2) * NODES * NODES]
-    return some > 0.0
+def near_suspects(values, nearest, p, n):
+    """Whether one of the n cubes from node p on along x meets the surface, and has an edge that begins at one of its
+    corners and is marked by ``suspected``.
+    """
+    row, least = values[NODES**3 + p :], nearest[p:]
+    some = False
+    for i in range(n):
+        marks = row[i] + row[i + 1] + row[i + NODES] + row[i + NODES + 1]
+        marks += row[i + NODES**2] + row[i + NODES**2 + 1] + row[i + NODES**2 + NODES]
+        some |= (marks > 0.0) & (least[i] == np.inf)
+    return some
 
 
 @inlined
@@ -211,11 +216,13 @@ def slipped(
         return count
     for row in range(BLOCK * BLOCK):
         y, z = row % BLOCK, row // BLOCK
+        if not near_suspects(values, nearest, (z * NODES + y) * NODES, BLOCK):
+            continue
         for x in range(BLOCK):
             p = (z * NODES + y) * NODES + x
             if nearest[p] < np.inf or eighths >> (x // half + 2 * (y // half) + 4 * (z // half)) & 1 == 0:
                 continue
-            if not near_suspects(values, p):
+            if not near_suspects(values, nearest, p, 1):
                 continue
             least, most = np.inf, -np.inf
             for c in range(8):
