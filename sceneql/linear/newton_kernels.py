@@ -177,7 +177,7 @@ def same(factored, a, plan):
 @lean_inlined
 def unlike(memory):
     """The part by which loads of friction may differ from those that the stage was solved with."""
-    return min(LOOSELY, max(LOADED, 100.0 * memory[RELATIVE]))
+    return min(LOOSELY, max(LOADED, 100.0 * memory[RELATIVE] * max(1.0, memory[SHARE])))
 
 
 @lean_inlined

@@ -194,7 +194,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         best[k] = y[k]
     positive, searching = True, has_limit
     stale = regular = True
-    kept, kept_positive = 0, True
+    kept = 0
     slow = failing = since = 0
     patience, slowed = (TRUE_AFTER_APART, SLOWED_APART) if has_limit else (TRUE_AFTER, SLOWED)
     before = before_mean = first = 0.0
@@ -211,9 +211,9 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         while stale:
             floats[channels.NEWTON] = a * a
             floats[channels.POSITIVE] = 1.0 if positive else 0.0
-            likewise = has_limit and kept > 0 and kept_positive
+            likewise = has_limit and kept > 0
             floats[channels.KEEPS] = 1.0 if likewise else 0.0
-            kept, kept_positive = (kept - 1, True) if likewise else (KEPT, positive)
+            kept = kept - 1 if likewise else KEPT
             slopes(functions, t, y, jacobian, floats, ints)
             floats[channels.NEWTON] = floats[channels.POSITIVE] = floats[channels.KEEPS] = 0.0
             if floats[channels.GROWS] != 0.0:

@@ -5,23 +5,26 @@ y1 = y0 + w^2/(1 + 2w) (y0 - y_before) + (1 + w)/(1 + 2w) h f(t1, y1), with w = 
 first step, and the first after the state was changed from outside (an event), is one of implicit Euler.
 
 ``settings``: the memory of Newton's method (newton_kernels), then start and end [s] of the latest step and the length
-of the one before it; then the scales of the stage plan. ``numbers``: [1 if steps follow the error, 1 if there is a step
-before, entries of the Jacobian's room], then the stage plan. ``work``: the step to try next, in an array of y's size;
-the slope at the end; the state before; start and end of the latest step; base; scratch (4); the Jacobian; the store.
+of the one before it, the part of the latest step's error that Newton's method may leave (0: none), and that error in
+units of its tolerance, of the entry that errs most; then the scales of the stage plan. ``numbers``: [1 if steps follow
+the error, 1 if there is a step before, entries of the Jacobian's room], then the stage plan. ``work``: the step to try
+next, in an array of y's size; the slope at the end; the state before; start and end of the latest step; base; scratch
+(4); the Jacobian; the store.
 """
 
 import math
 
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.pointers_kernels import AT_LIMIT
 from sceneql.compiled.vectors_kernels import same
-from sceneql.linear.newton_kernels import MEMORY, newton, norm
+from sceneql.linear.newton_kernels import MEMORY, SHARE, largest, newton, norm
 from sceneql.linear.stage_kernels import solve_stage
 from sceneql.system.signatures_kernels import STEP
 
 FOLLOWS_ERROR, HAS_BEFORE, ROOM, HEAD = range(4)
-START, END, LENGTH = MEMORY, MEMORY + 1, MEMORY + 2
-SCALES_AT = MEMORY + 3
+START, END, LENGTH, LEFT, ERROR = range(MEMORY, MEMORY + 5)
+SCALES_AT = MEMORY + 5
 ARRAYS = 10
 LONGEST = 2.0
 """Growth of a step: the formula is stable for sequences that grow by less than 1 + sqrt 2 (Grigorieff 1983)."""
@@ -64,6 +67,9 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         end[k] = y0[k] + (1.0 + w) * h * rate0[k] - w * w * change
         y1[k] = end[k] if numbers[FOLLOWS_ERROR] == 1 or w == 0.0 else y0[k] + w * change
     settings[END] = t + h
+    bounded = functions[AT_LIMIT] != 0 and settings[LEFT] > 0.0
+    if bounded:  # errors of a step that is shorter than the one before go with its third power
+        settings[SHARE] = max(1.0, settings[LEFT] * settings[ERROR] * min(1.0, w) ** 3)
     if not newton(
         functions, t + h, a, base, y0, y1, scratch, jacobian, store, scales, settings, plan, floats, ints
     ):  # fmt: skip
@@ -75,9 +81,12 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         wrong[k] = part * (y1[k] - end[k])
         slope[k] = (y1[k] - base[k]) / a
         end[k] = y1[k]
-    if numbers[FOLLOWS_ERROR] == 0:
+    if numbers[FOLLOWS_ERROR] == 0 and not bounded:
         return 0.0
     solve_stage(plan, a, jacobian, scales, store, wrong)
+    if bounded:
+        settings[ERROR] = largest(wrong, y0, y1, settings)
+        return 0.0
     error = norm(wrong, y0, y1, settings)
     factor = 0.9 * max(error, 1e-8) ** (-1.0 / (2.0 + numbers[HAS_BEFORE]))
     work[0] = h * min(LONGEST, max(0.2, factor))
