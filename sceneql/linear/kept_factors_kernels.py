@@ -28,9 +28,8 @@ MOST = 8
 """Largest number of iterations."""
 SOON, SLOWLY = 3, 0.5
 """Iterations after which the norm must have fallen to a part of the first: else a factorization costs less."""
-ENOUGH = 2e-1
-"""Part of the right side's norm, by the factors, to which a residual is brought down: updates that are closer to the
-exact ones are as many, as stiffness changes by more."""
+ENOUGH = 5e-2
+"""Part of the right side's norm, by the factors, to which a residual is brought down."""
 
 
 @lean_inlined
