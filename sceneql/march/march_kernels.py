@@ -107,14 +107,14 @@ def no_tied_drift(functions, h, y0, kicked, y1, floats, ints):
     """Stands in on an island whose drifts no ties bind."""
 
 
-@lean_inlined
+@lean(types.void(A, A), inner=True)
 def copy(source, target):
-    """Copy entry by entry: numba's slice assignment takes seconds to compile."""
+    """Copy entry by entry. As a helper, `march` would have its loop at every call; so it is with the next ones."""
     for k in range(target.size):
         target[k] = source[k]
 
 
-@lean_inlined
+@lean(types.int64(A, F), inner=True)
 def beyond(y, limit):
     """Number of entries that are larger than the limit or not finite: one pass that vectorizes."""
     count = 0
@@ -123,7 +123,7 @@ def beyond(y, limit):
     return count
 
 
-@lean_inlined
+@lean(types.int64(A), inner=True)
 def first_bad(y):
     """Index of the first entry that is not finite, or -1."""
     for k in range(y.size):
@@ -132,7 +132,7 @@ def first_bad(y):
     return -1
 
 
-@lean_inlined
+@lean(types.int64(A), inner=True)
 def largest(y):
     """Index of the entry of largest magnitude."""
     best = 0
@@ -142,7 +142,7 @@ def largest(y):
     return best
 
 
-@lean_inlined
+@lean(F(F, F, types.int64, types.boolean), inner=True)
 def next_factor(error, previous, order, rejected):
     """Factor for the next step: PI control (Gustafsson 1991; the constants of Hairer, Norsett & Wanner's DOPRI5)."""
     if not math.isfinite(error):

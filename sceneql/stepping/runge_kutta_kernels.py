@@ -11,10 +11,10 @@ import math
 
 from numba import types
 
-from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.kernels import lean
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.system.signatures_kernels import STEP, A, F, I
+from sceneql.system.signatures_kernels import STEP, A, F, I, N
 
 STAGES, EMBEDDED, SCALED, HEAD = range(4)
 RELATIVE, ABSOLUTE = range(2)
@@ -23,7 +23,7 @@ WEIGH = types.void(I, F, F, A, A, F, A, I, A, A, I)
 weigh_explicitly = lazy("sceneql.stepping.error_scales_kernels:weigh_explicitly", WEIGH)
 
 
-@lean_inlined
+@lean(types.void(A, N, N, F, A, A, A, A), inner=True)
 def add_stages(settings, row, count, h, y0, rate0, work, out):
     """out = y0 + h * the sum of the first stages, weighted by settings[row:]."""
     n = y0.size
