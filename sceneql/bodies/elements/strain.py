@@ -127,6 +127,10 @@ def add_strain(
     components of nodes; ``retardation`` [s]: time constant of viscosity, 0 for none. Raises ScriptError for parameters
     of the law out of range.
     """
+    from sceneql.compiled.compile_beside import compile_beside
+
+    compile_beside((law.kernels,))  # while those of elements are compiled here
+
     from sceneql.bodies.elements import strain_kernels, strain_slopes_kernels
     from sceneql.bodies.elements.laws import law_kernels
     from sceneql.compiled.kernels import address

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sceneql.compiled.compile_beside import compile_beside
+from sceneql.contacts.barrier import standing
 from sceneql.contacts.barrier.refused import beside_solids
-from sceneql.contacts.barrier.skin_pairs import add_pairs
+from sceneql.contacts.barrier.skin_pairs import KERNELS, LIMIT, add_pairs
 from sceneql.contacts.barrier.standing import add_objects, add_objects_to_body
 from sceneql.contacts.barrier.surfaces_of import FIXED, rigid_surfaces, soft_skin, soft_surfaces
 from sceneql.kinds import Ref
@@ -24,6 +26,8 @@ SLIP = 1e-4
 """Slip speed below which friction is smooth, relative to the size of all solids per second [1/s]."""
 COARSER = 3.0
 """Longest edge of triangles on rigid bodies, relative to the mean side of the skins' triangles."""
+PAIRS = ("sceneql.contacts.barrier.pairs_kernels", *(one.partition(":")[0] for one in (KERNELS, LIMIT)))
+"""Modules that a second process compiles first: what finds pairs, their forces, their limits."""
 
 
 def assemble(
@@ -34,6 +38,7 @@ def assemble(
     Returns the integers that `collision` remembers: -3, then the offset of gap and slip in the floats.
     Raises ScriptError for masses without surfaces, and for surfaces that touch or cross at the start.
     """
+    compile_beside((*PAIRS, standing.LIMIT.partition(":")[0]) if refs else PAIRS)  # while those of objects compile here
     for bodies in everyone:
         if soft_skin(bodies) is None and bodies.turning is None:
             model: Any = assembly.object(Ref(bodies.model))
