@@ -87,7 +87,7 @@ class Solver(Kind):
         raise Unsuitable(f"`{word}` does not tell its growth, so nothing is known of its stable step")
 
     def solves_tensions(self) -> bool:
-        """Whether it marches the tensions of flat skins of springs implicitly beyond their bound."""
+        """Whether it marches the tensions of flat skins implicitly beyond their bound."""
         return False
 
     def explicit_by_tolerance(self) -> bool:

@@ -38,7 +38,7 @@ class Oscillation:
     """Whether it may appear only after the start, so that the spectrum at the start does not show it."""
 
     tension: bool = False
-    """Whether it is that of a flat skin's springs, which a solver may march implicitly (Solver.solves_tensions)."""
+    """Whether it is that of a flat skin, which a solver may march implicitly (Solver.solves_tensions)."""
 
     @property
     def size(self) -> float:

@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Membrane
 
 
-def add_to_line(skin: Membrane, bend: float, assembly: Assembly) -> None:
-    """Add the bending term of a closed line; ``bend``: bending stiffness times depth [N m^2]."""
-    ints = (skin.count, skin.position_at, skin.force_at, assembly.floats([bend]))
-    assembly.term("internal", "sceneql.skins.bend_line_kernels:bend", ints)
+def add_to_line(skin: Membrane, bend: float, held: int, assembly: Assembly) -> None:
+    """Add the bending term of a closed line; ``bend``: bending stiffness times depth [N m^2]; ``held``: HELD_AT."""
+    ints = (skin.count, skin.position_at, skin.force_at, assembly.floats([bend]), held)
+    assembly.term("internal", "sceneql.skins.bend_line_kernels:bend", ints, stiff=True)
 
 
 def add_to_sheet(skin: Membrane, bend: float, assembly: Assembly) -> None:

@@ -26,28 +26,45 @@ ROUNDING = 2e-16
 """Of a sum of as many areas as vertices, in parts of the whole, where updates end."""
 
 
+LEAST = 0.1
+"""The least slope of Skalak's law that a solver is told, in parts of that at its own length: it turns when pressed."""
+
+
+@lean_inlined
+def by_stretch(s, floats, ints):
+    """What a side pulls [N] at s, length over own length: pretension + stiffness (s - 1) + modulus (s - 1/s^3) + skalak
+    (s^3 - s), the last two of sheets that do not stretch across."""
+    modulus, skalak = floats[ints[MODULUS_AT]], floats[ints[MODULUS_AT] + 1]
+    sheets = modulus * (s - 1.0 / (s * s * s)) + skalak * (s * s * s - s)
+    return floats[ints[PRETENSION_AT]] + floats[ints[STIFFNESS_AT]] * (s - 1.0) + sheets
+
+
+@lean_inlined
+def slope(s, floats, ints):
+    """How much that grows by s [N]."""
+    modulus, skalak = floats[ints[MODULUS_AT]], floats[ints[MODULUS_AT] + 1]
+    sheets = modulus * (1.0 + 3.0 / (s * s * s * s)) + skalak * max(3.0 * s * s - 1.0, 2.0 * LEAST)
+    return floats[ints[STIFFNESS_AT]] + sheets
+
+
 @lean(TERM, inner=True)
 def tension(t, y, rate, floats, ints):
-    """Adds what each side pulls at its ends [N]: pretension + stiffness (s - 1) + modulus (s - 1/s^3) + skalak (s^3 -
-    s), s = length over own length, the last two of sheets that do not stretch across; or what a solver has found."""
+    """Adds what each side pulls at its ends [N], by its stretch; or what a solver has found."""
     count, at, force = ints[COUNT], ints[POSITION_AT], ints[FORCE_AT]
-    pretension, stiffness = floats[ints[PRETENSION_AT]], floats[ints[STIFFNESS_AT]]
-    modulus, skalak = floats[ints[MODULUS_AT]], floats[ints[MODULUS_AT] + 1]
     lengths, held = floats[ints[LENGTHS_AT] : ints[LENGTHS_AT] + count], floats[ints[HELD_AT] :]
     for v in range(count):
         w = v + 1 if v < count - 1 else 0
         dx, dy = y[at + 3 * w] - y[at + 3 * v], y[at + 3 * w + 1] - y[at + 3 * v + 1]
         length = math.sqrt(dx * dx + dy * dy)
         if length > 0.0:
-            s = length / lengths[v]
-            pull = pretension + stiffness * (s - 1.0) + modulus * (s - 1.0 / (s * s * s)) + skalak * (s * s * s - s)
+            pull = by_stretch(length / lengths[v], floats, ints) / length
+            px, py = pull * dx, pull * dy
             if held[0] != 0.0:
-                pull = held[1 + v]
-            pull /= length
-            floats[force + 3 * v] += pull * dx
-            floats[force + 3 * v + 1] += pull * dy
-            floats[force + 3 * w] -= pull * dx
-            floats[force + 3 * w + 1] -= pull * dy
+                px, py = held[1 + 2 * v], held[2 + 2 * v]
+            floats[force + 3 * v] += px
+            floats[force + 3 * v + 1] += py
+            floats[force + 3 * w] -= px
+            floats[force + 3 * w + 1] -= py
 
 
 @lean_inlined

@@ -31,6 +31,13 @@ class Elasticity:
     """Bending stiffness [J]."""
 
 
+def fastest(law: Elasticity, cell: float) -> float:
+    """As Membrane.largest_tension, of a law, in cells [m]."""
+    # Along a side that does not stretch across.
+    slope = law.stretch + 4.0 * law.modulus + 2.0 * law.shear * (1.0 + law.area)
+    return max(ACROSS * law.tension + BENT * law.bend / cell**2, ALONG * slope)
+
+
 def stiffness_in(flow: Flow, largest: float) -> tuple[float, float]:
     """Pressure of contacts on a skin [Pa], and the shortest side of a cell [m].
 

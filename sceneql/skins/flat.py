@@ -118,14 +118,13 @@ def add_line(
     head = (skin.count, skin.position_at, skin.force_at)
     sheets = [law.modulus * depth, law.shear * (1.0 + law.area) * depth]
     tension, stretch = (assembly.floats([one * depth]) for one in (law.tension, law.stretch))
-    springs = law.stretch > 0.0 and not any(sheets)
-    held = assembly.floats(np.zeros(1 + count * springs))
+    held = assembly.floats(np.zeros(1 + 2 * count))
     ints = (*head, tension, stretch, assembly.floats(lengths), assembly.floats(sheets), held)
-    assembly.term("internal", f"{KERNELS}:tension", ints, stiff=springs)
+    assembly.term("internal", f"{KERNELS}:tension", ints, stiff=True)
     if law.bend > 0.0:
         from sceneql.skins.bending import add_to_line
 
-        add_to_line(skin, law.bend * depth, assembly)
+        add_to_line(skin, law.bend * depth, held, assembly)
     if kept:
         volume, room = assembly.floats([signed_area(points) * depth]), assembly.floats(np.zeros(3 * count))
         within = (*head, volume, room, at + 3 * count, assembly.floats([depth]))

@@ -12,7 +12,7 @@ a flow of one fluid); from FLOW on the flow's integers
 PRETENSION_AT, STIFFNESS_AT, LENGTHS_AT, MODULUS_AT, HELD_AT = 3, 4, 5, 6, 7
 """Of the tension of a closed line: its tension where it has its own lengths, by how much it grows for a relative
 stretch [N]; these lengths [m], of the side from each vertex to the next; two more numbers, of rubber and of Skalak's
-law [N]; 1 where a solver has found the tensions of sides, then these [N]."""
+law [N]; 1 where a solver has found what sides pull at the vertices where they begin, then this [N] (2)."""
 
 VOLUME_AT, NORMALS_AT, TALLY_AT, DEPTH_AT = 3, 4, 5, 6
 """Of what keeps its volume: that volume [m^3]; room for three floats a vertex; the entry of y that sums what was put
@@ -25,6 +25,8 @@ sides in its own plane (p, q; 0, r) [1/m] and its area [m^2], at the start. From
 from CORNERS on the three of each triangle, of what keeps its volume too."""
 
 BEND_AT, SUMS_AT, FACES, FOLDS = 3, 4, 5, 6
-"""Of bending: its stiffness [N m], of a line times the depth [N m^2]; of a sheet then room for two floats a vertex, the
+BENT_HELD_AT = 4
+"""Of bending: its stiffness [N m], of a line times the depth [N m^2] and then
+HELD_AT of its tension; of a sheet room for two floats a vertex, the
 number of its sides, and from FOLDS on of each its two vertices and those across from it; then the three of each
 triangle."""

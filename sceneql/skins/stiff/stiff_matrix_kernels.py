@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What tensions of closed lines do to lengths, as a dense matrix: by the fluid's answer to one force, and its factor.
+"""What pulls of closed lines do to lengths and turns, as a dense matrix: by the answer to one force, and its factor.
 
 In a box of one fluid, periodic and without solids, the answer to a force depends on where it is read from there alone:
 so one answer to each component of a force, at a face in the middle, is that to all, read and spread by each vertex's
@@ -113,14 +113,15 @@ def answers(v, last, weights, by_x, by_y, pairs, out, one):
                 out[4 * w + 2 * reading + pushing] = total
 
 
-@lean(types.boolean(F, A, A, A, A, A, A, A, A, A, I, I))
-def by_one_answer(a, along, y, soft, by_x, by_y, room, pairs, matrix, floats, lines, one):
-    """matrix (sides, sides), its lower half: ``soft`` less a times how fast sides become longer by each other's
-    tensions, by the answers to one force along x and along y. Whether vertices are anywhere.
+@lean(types.boolean(F, A, A, A, N, N, A, A, A, A, A, A, I, I))
+def by_one_answer(a, along, sizes, y, alongs, acrosses, by_x, by_y, room, pairs, matrix, floats, lines, one):
+    """matrix (unknowns, unknowns), its lower half: a times how fast sides become shorter and turn back by each other's
+    tensions and couples, by the answers to one force along x and along y. Whether vertices are anywhere.
 
-    ``room``: MATRIX_ROOM numbers a side; ``pairs``: 2 PAIRS numbers.
+    ``alongs``, ``acrosses``: unknowns, as of stiff_roots_kernels; ``room``: MATRIX_ROOM numbers a side; ``pairs``: 2
+    PAIRS numbers.
     """
-    sides = lines[SIDES]
+    sides, unknowns = lines[SIDES], alongs + acrosses
     weights = room[: WEIGHTS * sides]
     here, there = room[WEIGHTS * sides : (WEIGHTS + 4) * sides], room[(WEIGHTS + 4) * sides : (WEIGHTS + 8) * sides]
     begin = room[(WEIGHTS + 8) * sides : (WEIGHTS + 12) * sides]
@@ -139,18 +140,30 @@ def by_one_answer(a, along, y, soft, by_x, by_y, room, pairs, matrix, floats, li
             else:
                 for k in range(4 * (s + 1)):
                     there[k] = begin[k]
-            row = matrix[sides * s : sides * (s + 1)]
-            p, q = along[2 * s], along[2 * s + 1]
+            row = matrix[unknowns * s :]
+            turns = matrix[unknowns * (alongs + s) :] if acrosses > 0 else row
+            p, q = a * along[2 * s], a * along[2 * s + 1]
+            p_across, q_across = -q / sizes[s], p / sizes[s]
             for other in range(number + 1):
                 start = lines[HEAD + LINE * other + FIRST]
                 end = start + lines[HEAD + LINE * other + COUNT]
                 for r in range(start, min(end, s + 1)):
                     n = r + 1 if r + 1 < end else start
-                    x = along[2 * r] * (there[4 * r] - there[4 * n] - here[4 * r] + here[4 * n])
-                    x += along[2 * r + 1] * (there[4 * r + 1] - there[4 * n + 1] - here[4 * r + 1] + here[4 * n + 1])
-                    z = along[2 * r] * (there[4 * r + 2] - there[4 * n + 2] - here[4 * r + 2] + here[4 * n + 2])
-                    z += along[2 * r + 1] * (there[4 * r + 3] - there[4 * n + 3] - here[4 * r + 3] + here[4 * n + 3])
-                    row[r] = (soft[s] if r == s else 0.0) - a * (p * x + q * z)
+                    xx, xy = there[4 * n] - there[4 * r], there[4 * n + 1] - there[4 * r + 1]
+                    yx, yy = there[4 * n + 2] - there[4 * r + 2], there[4 * n + 3] - there[4 * r + 3]
+                    xx, xy = xx + here[4 * r] - here[4 * n], xy + here[4 * r + 1] - here[4 * n + 1]
+                    yx, yy = yx + here[4 * r + 2] - here[4 * n + 2], yy + here[4 * r + 3] - here[4 * n + 3]
+                    c, d = along[2 * r], along[2 * r + 1]
+                    x, z = c * xx + d * xy, c * yx + d * yy
+                    if alongs > 0:
+                        row[r] = p * x + q * z
+                    if acrosses > 0:
+                        c, d = -along[2 * r + 1] / sizes[r], along[2 * r] / sizes[r]
+                        x_across, z_across = c * xx + d * xy, c * yx + d * yy
+                        turns[alongs + r] = p_across * x_across + q_across * z_across
+                        if alongs > 0:
+                            turns[r] = p_across * x + q_across * z
+                            matrix[unknowns * (alongs + r) + s] = p * x_across + q * z_across
     return True
 
 

@@ -11,9 +11,19 @@ from sceneql.flows.layout import LED
 from sceneql.flows.schemes import additive
 from sceneql.kinds.stable_step import stable_step
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.skins.elasticity import ALONG
-from sceneql.skins.skin_layout import COUNT, FLOW, HELD_AT, POSITION_AT, STIFFNESS_AT
+from sceneql.skins.elasticity import Elasticity, fastest
+from sceneql.skins.skin_layout import (
+    BEND_AT,
+    COUNT,
+    FLOW,
+    HELD_AT,
+    MODULUS_AT,
+    POSITION_AT,
+    PRETENSION_AT,
+    STIFFNESS_AT,
+)
 from sceneql.skins.stiff.stiff_choice_kernels import BOUND, CHOICE, COST, LATER, WARM, WINDOW
+from sceneql.skins.stiff.stiff_mixing_kernels import GRAM
 from sceneql.skins.stiff.stiff_step_kernels import ROWS, STATE
 
 if TYPE_CHECKING:
@@ -25,20 +35,23 @@ if TYPE_CHECKING:
 
 KERNELS = "sceneql.skins.stiff"
 TENSION, PUSH = "sceneql.skins.closed_line_kernels:tension", "sceneql.skins.spline_kernels:push"
+BENDING = "sceneql.skins.bend_line_kernels:bend"
 LARGEST = 3000
-"""Sides of all such skins: their matrix then takes 72 MB."""
+"""Sides of all such skins: their matrix then takes 72 MB, or 288 MB where turns are unknowns, too."""
 SOLVES, PAIR, FACTOR = 5.0, 0.3, 700.0
 """Explicit steps that an implicit one costs: by its solves of the fluid, by pairs of sides over cells, more by as many
 sides as have its factor cost as much (tests/bench/bench_skins.py stiff)."""
 
 
 class Lines(NamedTuple):
-    """The flat skins of springs in a flow."""
+    """The flat skins in a flow."""
 
     skins: Sequence[Any]
     """The integers of their tensions."""
     ties: Sequence[Any]
     """Those of what ties each to the flow."""
+    bends: Sequence[int]
+    """Where the stiffness of each against bending is in the floats; -1 where it has none."""
     why: str
     """Why they cannot be implicit; empty where they can."""
 
@@ -47,27 +60,39 @@ class Lines(NamedTuple):
         """How many sides all of them have."""
         return sum(int(ints[COUNT]) for ints in self.skins)
 
-    def cost(self, flow: Flow) -> float:
+    def laws(self, flow: Flow, floats: Floats) -> list[Elasticity]:
+        """Of each its elastic constants; the modulus of Skalak's law is that of a line, with the resistance to area."""
+        found, depth = [], flow.spacing[2]
+        for ints, bend in zip(self.skins, self.bends, strict=True):
+            at = [ints[PRETENSION_AT], ints[STIFFNESS_AT], ints[MODULUS_AT], ints[MODULUS_AT] + 1]
+            found.append(Elasticity(*(float(floats[one]) / depth for one in at)))
+            if bend >= 0:
+                found[-1] = replace(found[-1], bend=float(floats[bend]) / depth)
+        return found
+
+    def cost(self, flow: Flow, floats: Floats) -> float:
         """Explicit steps that a step with implicit skins costs, by counts of operations."""
-        cells = float(np.prod(flow.cells.shape))
-        return SOLVES + PAIR * self.sides**2 / cells * (1.0 + self.sides / FACTOR)
+        cells, sides = float(np.prod(flow.cells.shape)), self.sides
+        across = any(one.tension > 0.0 or one.bend > 0.0 for one in self.laws(flow, floats))
+        unknowns = 2 * sides if across else sides
+        return SOLVES + PAIR * sides**2 / cells * (1.0 + (unknowns / sides) ** 3 * sides / FACTOR)
 
     def bound(self, flow: Flow, floats: Floats) -> float:
         """The longest step [s] that the explicit method bears by their tensions; infinite without skins."""
         cell, axes = min(flow.spacing[:2]), 2
-        stretch = max((float(floats[ints[STIFFNESS_AT]]) for ints in self.skins), default=0.0) / flow.spacing[2]
-        if stretch == 0.0:
+        largest = max((fastest(one, cell) for one in self.laws(flow, floats)), default=0.0)
+        if largest == 0.0:
             return float("inf")
-        turn = float((ALONG * stretch / (flow.density * cell**3)) ** 0.5)
+        turn = float((largest / (flow.density * cell**3)) ** 0.5)
         decay = flow.viscosity / flow.density * axes / cell**2
         size = max(turn, decay)
         return stable_step(lambda step: additive.growth(decay / size, turn / size, step)) / size
 
 
 def lines_of(stiff: Sequence[tuple[str, Any]], flow: Flow | None) -> Lines | None:
-    """The flat skins of springs among terms (System.stiff) of an island; None where no skin is in a flow of one fluid.
+    """The flat skins among terms (System.stiff) of an island; None where no skin is in a flow of one fluid.
 
-    A skin of another law, or in a deep flow, has no such term, and is explicit.
+    A skin in a deep flow has no such term, and is explicit.
     """
     ties = {int(ints[POSITION_AT]): ints for kernel, ints in stiff if kernel == PUSH}
     skins = [ints for kernel, ints in stiff if kernel == TENSION and int(ints[POSITION_AT]) in ties]
@@ -75,12 +100,14 @@ def lines_of(stiff: Sequence[tuple[str, Any]], flow: Flow | None) -> Lines | Non
         return None
     sides, why = sum(int(ints[COUNT]) for ints in skins), ""
     if not skins:
-        why = "no flat skin of springs, which alone can be implicit"
+        why = "no flat skin, which alone can be implicit"
     elif flow.ints[LED] > 0:
         why = "implicit skins go with no solids that move"
     elif sides > LARGEST:
         why = f"implicit skins have {sides} sides, more than {LARGEST}"
-    return Lines(skins, [ties[int(ints[POSITION_AT])] for ints in skins], why)
+    bent = {int(ints[POSITION_AT]): int(ints[BEND_AT]) for kernel, ints in stiff if kernel == BENDING}
+    at = [int(ints[POSITION_AT]) for ints in skins]
+    return Lines(skins, [ties[one] for one in at], [bent.get(one, -1) for one in at], why)
 
 
 def implicit(made: Stepper) -> Stepper:
@@ -111,11 +138,11 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         why = f"'{part}' has {why}" if why.startswith("no ") else why
         raise ScriptError([Diagnostic("invalid", why, spans[0], "write `skins: explicit`")])
     lines, first, sides = [len(found.skins), found.sides], 0, found.sides
-    for ints, tie in zip(found.skins, found.ties, strict=True):
-        lines += [*(int(one) for one in ints[: HELD_AT + 1]), *(int(one) for one in tie[: FLOW + 1]), first]
+    for ints, bend, tie in zip(found.skins, found.bends, found.ties, strict=True):
+        lines += [*(int(one) for one in ints[: HELD_AT + 1]), bend, *(int(one) for one in tie[: FLOW + 1]), first]
         first += int(ints[COUNT])
     numbers = np.array([*flat.numbers, *lines, len(flat.settings), len(flat.numbers)], dtype=np.int64)
-    work = flat.work + STATE + (ROWS + sides) * sides + 2 * len(system.y)
+    work = flat.work + STATE + (ROWS + 4 * sides) * sides + GRAM + 2 * len(system.y)
     text = f"{flat.text}; the tensions of {sides} sides of skins implicit, by Newton's method"
     return replace(flat, numbers=numbers, work=work, text=text)
 
@@ -127,7 +154,7 @@ def prepare_choice(system: System, stepper: Stepper) -> Prepared:
     assert flow is not None
     assert found is not None
     choice = np.zeros(CHOICE)
-    choice[BOUND], choice[COST] = found.bound(flow, system.floats), found.cost(flow)
+    choice[BOUND], choice[COST] = found.bound(flow, system.floats), found.cost(flow, system.floats)
     choice[LATER] = 0.5 * (WARM + WINDOW) * choice[COST]
     return replace(made, settings=np.append(made.settings, choice))
 
@@ -138,7 +165,7 @@ def remark(found: Lines, flow: Flow, floats: Floats, step: float | None) -> str:
         return f"with skins explicit: there is {found.why}" if found.why.startswith("no ") else found.why
     sides, bound = f"the tensions of {found.sides} sides of skins", found.bound(flow, floats)
     if step is None:
-        cost = f"{found.cost(flow):.2g} times as long, which one with implicit tensions costs"
+        cost = f"{found.cost(flow, floats):.2g} times as long, which one with implicit tensions costs"
         return (
             f"with {sides} explicit up to their bound of {bound:.3g} s, and implicit where the flow's steps are {cost}"
         )

@@ -81,15 +81,13 @@ class Immersion(Force):
         if size is not None:
             cell, axes = min(side / n for side, n in zip(size, counts(size, cell), strict=False)), len(size)
         decay = flow.thickest() / flow.density * axes / cell**2
+        filled = any(model.carried and model.fluid() is not None for model in models.values())
         for name, model in models.items():
             if model.carried:
                 inside = (model.fluid() or (flow.density, 0.0))[0]
                 what, weight = f"the skin '{name}' in cells of {cell:g} m", 0.5 * (flow.density + inside) * cell**3
-                along = model.implicit_tension() if axes == 2 else 0.0
-                across = model.largest_tension(cell, along=along == 0.0)
-                for tension, solved in ((along, True), (across, False)):
-                    if tension > 0.0:
-                        yield Oscillation(0.0, decay, what, ("on",), (tension / weight) ** 0.5, tension=solved)
+                turn = (model.largest_tension(cell) / weight) ** 0.5
+                yield Oscillation(0.0, decay, what, ("on",), turn, tension=axes == 2 and not filled)
                 continue
             turn = swing(name, model, flow.density, cell, axes, flow.depth if axes == 2 else 1.0, scene)
             yield Oscillation(0.0, decay, f"the springs of '{name}' in cells of {cell:g} m", ("on",), turn)

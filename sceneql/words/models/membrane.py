@@ -12,7 +12,7 @@ from sceneql.kinds import Gives, Model, Problem, Quantity, Record, Ref, field, q
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
-from sceneql.skins.elasticity import ACROSS, ALONG, BENT
+from sceneql.skins.elasticity import Elasticity, fastest
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -74,8 +74,8 @@ class Membrane(Model):
     In a flat flow it is the outline of an object in the plane z = 0, in a deep one its surface in triangles, with
     vertices evenly apart that move as the fluid does. What it holds stays: the fluid is incompressible, and after each
     step one number moves all vertices along the slope of the volume, X += s dV/dX, so that what is drawn keeps it
-    exactly; `volume_correction` sums what that put back. Stiff flat skins of springs take long steps by `ark3`,
-    which `auto` takes.
+    exactly; `volume_correction` sums what that put back. Stiff flat skins take long steps by `ark3`, which
+    `auto` takes; deep ones, and those in flows with a `filling`, are explicit.
 
     With a `filling` it holds a fluid other than that of its flow: treacle in air, which `gravity` weighs. Masses in
     cells are what the drawn skin cuts off them, exactly; what crosses a side of a cell takes its momentum along.
@@ -166,20 +166,13 @@ class Membrane(Model):
 
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve its vertices, add its tension and what keeps its volume. Raises ScriptError."""
-        from sceneql.skins.elasticity import Elasticity
         from sceneql.skins.fitting import must_fit, spacing_in
 
         flow = assembly.flow_of()
         if flow is None:  # a flow that could not be made has its own diagnostic
             return
         spacing = spacing_in(flow, self.spacing, self.of, assembly)
-        law = Elasticity(
-            self.law.tension or self.prestress,
-            0.0 if self.law.springs is None else self.law.springs.stretch,
-            0.0 if self.law.neo_hookean is None else self.law.neo_hookean.modulus,
-            *((0.0, 0.0) if self.law.skalak is None else (self.law.skalak.modulus, self.law.skalak.area)),
-            bend=self.bend,
-        )
+        law = self.elasticity()
         made: Line | Sheet
         largest = self.largest_tension(min(flow.spacing[: len(flow.areas)]))
         if len(flow.areas) == 2:
@@ -198,6 +191,16 @@ class Membrane(Model):
         must_fit(made, self.of, assembly)
         assembly.membrane(made.membrane)
         self._made = made
+
+    def elasticity(self) -> Elasticity:
+        """Its elastic constants."""
+        return Elasticity(
+            self.law.tension or self.prestress,
+            0.0 if self.law.springs is None else self.law.springs.stretch,
+            0.0 if self.law.neo_hookean is None else self.law.neo_hookean.modulus,
+            *((0.0, 0.0) if self.law.skalak is None else (self.law.skalak.modulus, self.law.skalak.area)),
+            bend=self.bend,
+        )
 
     def fluid(self) -> tuple[float, float] | None:
         """What it holds."""
@@ -254,24 +257,13 @@ class Membrane(Model):
             return np.array(skin.position_at + 3 * skin.count)
         return rows if output == "positions" else None
 
-    def implicit_tension(self) -> float:
-        """As largest_tension, of the springs of a flat skin, whose tensions a solver may solve for [N/m]."""
-        return 0.0 if self.law.springs is None else ALONG * self.law.springs.stretch
-
-    def largest_tension(self, cell: float, along: bool = True) -> float:
+    def largest_tension(self, cell: float) -> float:
         """Times k^3/density, k one over the side of a flow's ``cell``, how fast its waves turn, squared [N/m].
 
         That of waves across it follows from its tension and its bending, of those along it from its stretch, all as the
-        splines leave them (the eigenvalues of ellipses and bars in flows, tests/test_membranes.py). ``along``: whether
-        the latter count.
+        splines leave them (the eigenvalues of ellipses and bars in flows, tests/test_membranes.py).
         """
-        stretch = 0.0 if self.law.springs is None else self.law.springs.stretch
-        if self.law.neo_hookean is not None:
-            stretch = 4.0 * self.law.neo_hookean.modulus
-        if self.law.skalak is not None:  # along a side that does not stretch across
-            stretch = 2.0 * self.law.skalak.modulus * (1.0 + self.law.skalak.area)
-        across = ACROSS * (self.law.tension or self.prestress) + BENT * self.bend / cell**2
-        return max(across, ALONG * stretch * along)
+        return fastest(self.elasticity(), cell)
 
     def remark(self, state: ModelState) -> str:
         """Its vertices."""

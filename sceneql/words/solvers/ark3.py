@@ -19,11 +19,12 @@ class Ark3(Solver):
     projections a stage. Diffusion of fields that are solved with the flow is implicit too; all else is explicit.
     Source: Kennedy & Carpenter (2003), Appl. Numer. Math. 44, 139-181, ARK3(2)4L[2]SA.
 
-    The tensions of flat skins of springs are explicit up to the step that they bear, and beyond it implicit, too, at
-    some solves of the fluid a stage: a skin that is so stiff that it hardly stretches then takes steps as long as the
-    flow's own, once its first swings are over. With a tolerance they become implicit where stability, not the error,
-    holds the steps, and as long as a step is worth what it costs. Source: Ceniceros, Fisher & Roma (2009), J. Comput.
-    Phys. 228, 7137-7158.
+    What flat skins pull, by any law and by `bend`, is explicit up to the step that they bear, and beyond it
+    implicit, too, at some solves of the fluid a stage: a skin that is so stiff that it hardly stretches then takes
+    steps as long as the flow's own, once its first swings are over. With a tolerance they become implicit where
+    stability, not the error, holds the steps, and as long as a step is worth what it costs. Source: Ceniceros,
+    Fisher & Roma (2009), J. Comput. Phys. 228, 7137-7158. Deep skins, and those in flows with a `filling`, are
+    explicit.
     """
 
     marches = "a flow"
@@ -32,7 +33,7 @@ class Ark3(Solver):
     step: FixedTime | None = field("Length of a step, in place of a tolerance.", None, above=0)
     largest_step: FixedTime | None = field("No step is longer.", None, above=0)
     skins: Literal["auto", "explicit", "implicit"] = field(
-        "How the tensions of flat skins of springs are marched: auto is implicit beyond their bound.", "auto"
+        "How the tensions of flat skins are marched: auto is implicit beyond their bound.", "auto"
     )
 
     def stepper(self) -> Stepper:
