@@ -54,3 +54,22 @@ def test_chains_move_as_the_same_ties_do_in_an_order_that_is_none(tmp_path, ties
         assert chained
         for value, other in zip(found, wanted, strict=True):
             np.testing.assert_allclose(value, other, rtol=1e-9, atol=1e-9)
+
+
+def test_forces_that_die_away_along_a_chain_end_before_they_are_subnormal(tmp_path):
+    # The inertia is nearly that of masses at the ends, so that a link hands on a five-hundredth of what pushes it.
+    inertia, count = "1e-4 0.2505 0.2505 kg*m^2", 130
+    bodies = [f"        c{k}: {{mass: 1 kg, inertia: {inertia}, position: {k + 0.5} 0 0 m}}" for k in range(count)]
+    ties = ["  h0: {hinge: {between: [links.c0, world], at: 0 0 0 m}}"]
+    ties += [f"  h{k}: {{hinge: {{between: [links.c{k}, links.c{k - 1}], at: {k} 0 0 m}}}}" for k in range(1, count)]
+    lines = ["clock: {end: 0.01 s}", "models:", "  links:", "    rigid:", "      bodies:", *bodies]
+    lines += ["forces: [gravity]", "ties:", *ties, "solvers: {main: {rk4: {step: 5 ms}}}"]
+    path = tmp_path / "scene.yaml"
+    path.write_text("\n".join(lines))
+    run = Run(load(path, pruned=False))
+    moment = run.at(0.01)
+    assert run.islands[0].assembly.tie_ints[CHAIN_AT] >= 0
+    forces = np.abs([moment.read(f"h{k}", "force") for k in range(count)])
+    sizes = forces[forces > 0.0]
+    assert sizes.max() > 1.0
+    assert np.finfo(float).tiny <= sizes.min() < 1e-60

@@ -46,8 +46,17 @@ from sceneql.system.signatures_kernels import A, F, I, N
 
 INVERSE, GIVEN = 6, 7
 """Lanes behind those of the rows."""
+NONE = 1e-100
+"""Size below which a force or a part of one counts as none. Along a chain what begins at one end dies away by a factor
+a tie: hundreds of ties on it would be subnormal, and then its products, each of which takes some hundred cycles."""
 SIDE = 64
 """Numbers of the columns by one mover: six of J, and by the second one the bias behind them."""
+
+
+@lean_inlined
+def some(force):
+    """A force, 0 where it counts as none."""
+    return force if abs(force) > NONE else 0.0
 
 
 @lean_inlined
@@ -143,12 +152,12 @@ def eliminate_turned(floats, ints, tie, part):
         for k in range(i):
             row = fma(-(own[LANES * k + i] * own[LANES * k + INVERSE]), load(own, LANES * k), row)
         store(own, LANES * i, row)
-        pivot = own[LANES * i + i]
+        pivot, given = own[LANES * i + i], own[LANES * i + GIVEN]
         if not least * diagonal[i] < pivot < math.inf:
             most = math.inf
         inverse = 1.0 / pivot if pivot != 0.0 else 0.0
         most = max(most, inverse * diagonal[i])
-        store(own, LANES * i, with_lane(row, INVERSE, inverse))
+        store(own, LANES * i, with_lane(with_lane(row, INVERSE, inverse), GIVEN, some(given)))
     scratch[MOST_AT] = most
 
 
@@ -178,6 +187,7 @@ def forward(floats, ints, tie):
                 for i in range(rows):
                     x[i] -= w[i] * value
     for k in range(rows):
+        x[k] = some(x[k])
         value = x[k] * own[LANES * k + INVERSE]
         for i in range(k + 1, rows):
             x[i] -= own[LANES * k + i] * value
@@ -208,7 +218,7 @@ def backward(floats, ints, tie, begun):
         total = x[i]
         for j in range(rows - 1, i, -1):
             total -= own[LANES * i + j] * x[j]
-        x[i] = total * own[LANES * i + INVERSE]
+        x[i] = some(total * own[LANES * i + INVERSE])
 
 
 @lean(types.void(A, I, types.boolean), inner=True)

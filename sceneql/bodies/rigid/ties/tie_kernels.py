@@ -75,6 +75,9 @@ WELL, SHORT = 1e-7, 500
 to which that holds. The least pivot of a chain of n links is of the order of 1/n^3, however well it is solved."""
 SHARE = 1e-2
 """Part of LEFT that may be left of the numbers that a gap is the difference of."""
+FAINT = 1e-80
+"""Least size of the numbers that an equation is a sum of: what is left of fainter ones no force takes away that counts
+(tie_chain_kernels.NONE)."""
 FEW, MOST_CORRECTIONS = 6, 50
 GAIN = 0.98
 """After FEW corrections one that leaves more than this part is the last: the rest is of ties that cannot hold."""
@@ -149,7 +152,7 @@ def left_of(floats, ints, tie, row, target, size_at, right):
     for k in range(row, row + which[ROWS_OF]):
         own = floats[to : to + ROW]
         wanted = own[target]
-        size = max(abs(wanted), SHARE * own[size_at])
+        size = max(abs(wanted), SHARE * own[size_at], FAINT)
         a1, b1, c1, d1, e1, f1 = own[0] * a, own[1] * b, own[2] * c, own[3] * d, own[4] * e, own[5] * f
         u1, v1, w1, x1, y1, z1 = own[6] * u, own[7] * v, own[8] * w, own[9] * x, own[10] * y, own[11] * z
         left = wanted + ((a1 + b1 + c1) + (d1 + e1 + f1)) + ((u1 + v1 + w1) + (x1 + y1 + z1))

@@ -3,7 +3,7 @@
 
 from numba import types
 
-from sceneql.bodies.rigid.ties.tie_kernels import MOST_CORRECTIONS, SHARE, balance, clear, refine, survey
+from sceneql.bodies.rigid.ties.tie_kernels import FAINT, MOST_CORRECTIONS, SHARE, balance, clear, refine, survey
 from sceneql.bodies.rigid.ties.tie_layout import (
     EASE_AT,
     MOVED_AT,
@@ -97,7 +97,7 @@ def weigh_speeds_of(floats, ints, tie, row):
     one, two = floats[first : first + MOVED], floats[second : second + MOVED]
     for k in range(ints[RIGHT_AT] + row, ints[RIGHT_AT] + row + which[ROWS_OF]):
         own = floats[to : to + ROW]
-        size = 0.0
+        size = FAINT
         for c in range(3):
             size += abs(own[c] * one[AT_V + c]) + abs(own[3 + c] * one[AT_W + c])
             size += abs(own[6 + c] * two[AT_V + c]) + abs(own[9 + c] * two[AT_W + c])
