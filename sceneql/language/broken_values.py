@@ -111,6 +111,7 @@ def calls_another(text: str) -> bool:
 def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
     """Report all faults, given in the order of the text, each with its line as corrected."""
     lines: dict[int, list[Fault]] = {}
+    loops: dict[int, bool] = {}  # of each line, which may be long and hold many faults
     for fault in faults:
         lines.setdefault(source.position(fault.start)[0], []).append(fault)
     for together in lines.values():
@@ -121,7 +122,10 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
             written = source.text[fault.caret : fault.end]
             if calls_another(written):
                 continue  # it is reported where the value is read
-            if _LOOP.search(line := source.line(source.position(fault.caret)[0])) is not None:
+            line = source.line(number := source.position(fault.caret)[0])
+            if number not in loops:
+                loops[number] = _LOOP.search(line) is not None
+            if loops[number]:
                 help = (
                     written_out(line.partition(": ")[2]) or f"values have no loops; of parts {instead('entry', 'for')}"
                 )
