@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 import scipy.sparse as sparse
-from numba import njit
 from scipy.sparse.linalg import spsolve
 
+from lines_kernels import solved_by_lines
 from sceneql.flows.layout import (
     COSINES,
     FREE_FREE,
@@ -17,7 +17,7 @@ from sceneql.flows.layout import (
     SINES,
     WAVES,
 )
-from sceneql.flows.lines_kernels import BAND, BOTH, HEAD, prepare, through_lines
+from sceneql.flows.lines_kernels import BAND, BOTH, HEAD, prepare
 from sceneql.flows.transforms import lines_room, modes, plan_of
 
 ENDS = {
@@ -50,11 +50,6 @@ def across(count, kind):
     return found.tocsr()
 
 
-@njit
-def solve(x, nx, ny, tables, scratch, plan, store):
-    through_lines(x, nx, ny, tables, scratch, plan, store, (0, ny), False, False)
-
-
 @pytest.mark.parametrize("kind", ENDS)
 @pytest.mark.parametrize("a", [1e-3, 0.7, 300.0])
 @pytest.mark.parametrize("periodic", [False, True])
@@ -77,7 +72,7 @@ def test_bands_of_rows_come_to_what_factors_do(kind, a, periodic):
     if kind != WAVES:
         given[[end for end, what in zip((0, -1), ENDS[kind], strict=True) if what == "held"]] = 0.0
     found, scratch = given.copy(), np.zeros(BOTH * (9 * nx + 17) + 48)
-    solve(found.ravel(), nx, ny, np.array(tables), scratch, plan, store)
+    solved_by_lines(found.ravel(), nx, ny, np.array(tables), scratch, plan, store, 0, ny, False, False)
     whole = sparse.kron(sparse.eye_array(ny), tie_x * across(nx, kind_x)) + sparse.kron(
         tie_y * across(ny, kind), sparse.eye_array(nx)
     )
